@@ -6,7 +6,7 @@
 Of each case the most probable hypotheses that were refitted are integrated anew over calibrated parameters and
 amplitudes, under the noise, model error and priors of the diagnosis: by importance sampling from the Gaussian of the
 refit, which is what Laplace's integral is a guess of, and with `--nested` by nested sampling, which knows nothing of
-the refit. What is held against these is `log_bayes`, the log evidence over that of nothing.
+the refit. What is held against these is `log_bayes`, the log evidence over that of nothing, under one noise for both.
 Source: Skilling 2006; Speagle 2020 (dynesty).
 """
 
@@ -31,7 +31,7 @@ from measured.doubt import SIZES
 from validation.calibration.calibrate import Fit, InnerProduct
 from validation.comparison.linearisation import segments
 from validation.diagnosis import infer
-from validation.inference.evidence import Evidence, fitted_members, with_members
+from validation.inference.evidence import Evidence, fitted_members, log_bayes, with_members
 from validation.inference.hypotheses import Weighed, best_first, probabilities
 
 FIVE = 5  # hypotheses of a case
@@ -170,9 +170,10 @@ def audited(label: Label, count: int, nested: bool) -> list[Row]:
         by_nesting = one.nested(label.seed) - zero_nested - paid if nested else None
         name, size, sampled, both = e.name(h), one.fit.theta.size, log_z - zero - paid, float(np.hypot(sure, unsure))
         seconds = time.process_time() - begin
-        row = Row(label.case, name, size, P[id(h)], h.log_bayes, sampled, both, effective, by_nesting, seconds)
+        laplace = log_bayes(e, one.fit, h.members)
+        row = Row(label.case, name, size, P[id(h)], laplace, sampled, both, effective, by_nesting, seconds)
         more = "" if by_nesting is None else f", nested {by_nesting:.1f}"
-        print(f"{label.case:26s} {name:60s} {h.log_bayes:7.1f}, sampled {sampled:.1f} +- {both:.1f}{more}", flush=True)
+        print(f"{label.case:26s} {name:60s} {laplace:7.1f}, sampled {sampled:.1f} +- {both:.1f}{more}", flush=True)
         rows.append(row)
     return rows
 
