@@ -536,8 +536,8 @@ def single(guesses: list[Guess], target: Target, labels: Mapping[str, str]) -> l
         other = bool(g.place) and g.place not in words
         outdoors = bool(g.place) and is_outer(g.column)  # a machine has its room around it
         more = len(words) * bool(g.place)  # "T room" is the room before "T chamber wall" is
-        named = input_name(g) == g.feeds if g.feeds else True  # "Speed" is the speed before "S-1 [1/s]" is
-        return is_setpoint(g.column), later, not READ & words, inlet, outdoors, other, g.why != SUREST, not named, more
+        plain = not g.feeds or input_name(g) == g.feeds  # "Speed" is the speed before "S-1 [1/s]" is
+        return is_setpoint(g.column), later, not READ & words, inlet, outdoors, other, g.why != SUREST, not plain, more
 
     for g in sorted(guesses, key=order):
         key = g.feeds or (g.place if g.place in target.boundaries else "")
