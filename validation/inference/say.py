@@ -439,12 +439,12 @@ def sentence(
     if verdict == "outside":
         place = f" at {posterior.heat[0].place}" if posterior.heat and posterior.best.heat else ""
         return f"heat is missing or in excess{place}; nothing in the catalogue explains it ({percent(choice.sure)})"
-    heat = _unnamed_heat(posterior, rows)
+    heat = _leading_heat(posterior, rows)
     each = [_group_words(posterior, g, rows, () if i else heat) for i, g in enumerate(choice.groups)]
     return "; ".join(each) + ("; check the measurement first" if verdict == "data" else "")
 
 
-def _unnamed_heat(posterior: Posterior, rows: Sequence[Candidate]) -> tuple[str, ...]:
+def _leading_heat(posterior: Posterior, rows: Sequence[Candidate]) -> tuple[str, ...]:
     """Heat of unknown cause at every place where that is more probable than any cause with a name."""
     P = probabilities(posterior.hypotheses)
     least = max((r.probability for r in rows), default=0.0)

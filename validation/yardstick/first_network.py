@@ -122,16 +122,16 @@ def _without_odd(
 
     left_out : (n_fold,) error (K) of each
     """
-    used = np.flatnonzero(table.credit > 0.0)
-    if used.size <= FEWEST_FOLDS:
+    members = np.flatnonzero(table.credit > 0.0)
+    if members.size <= FEWEST_FOLDS:
         return None
-    worst = used[np.argmax(left_out[used])]
-    others, weight = used[used != worst], np.arange(len(folds)) != worst
+    worst = members[np.argmax(left_out[members])]
+    others, weight = members[members != worst], np.arange(len(folds)) != worst
     normal = [[w * N for N in fold] for w, fold in zip(weight, table.normal, strict=True)]
-    tried = replace(table, normal=normal, weight=_weights(normal))
-    needed, tried, errors = _least_terms([tried], folds, table.credit * weight)
+    candidate = replace(table, normal=normal, weight=_weights(normal))
+    needed, candidate, errors = _least_terms([candidate], folds, table.credit * weight)
     now, before = (np.exp(np.mean(np.log(e[others]))) for e in (errors, left_out))
-    return (needed, tried, errors) if now < ODD_GAIN * before and errors[worst] > ODD * now else None
+    return (needed, candidate, errors) if now < ODD_GAIN * before and errors[worst] > ODD * now else None
 
 
 def _errors_left_out(
