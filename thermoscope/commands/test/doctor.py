@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from geom.errors import InputError
+from geom.text import counted
 from measured.recordings.readings import read_test
 from thermoscope.case_folder.doctor import examined
 from thermoscope.case_folder.folder import find_case, network_of, patient_of
@@ -55,7 +56,7 @@ def doctor_summary(wrong: Sequence[Finding], doubts: Sequence[Finding], case: st
     things, look = ("thing", "looks") if doubtful == 1 and not wrong else ("things", "look")
     refused = f"{len(wrong)} would be refused, " if wrong else ""
     sentence = f"{refused}{doubtful} {things} {look} wrong" if wrong or doubtful else "Nothing looks wrong"
-    sentence += f"; {remarks} remark{'s' if remarks > 1 else ''}, perhaps as you meant it." if remarks else "."
+    sentence += f"; {counted(remarks, 'note')}, perhaps as you meant it." if remarks else "."
     lines = [
         f"{word}{', '.join(filter(None, (f.test, f.where))) or 'all'}: {f.what.removesuffix('?')}. Cure: {f.cure}"
         for word, rows in (("REFUSED ", wrong), ("", doubts))
