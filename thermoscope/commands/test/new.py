@@ -411,6 +411,9 @@ def _remarks(document: Mapping[str, Any]) -> list[str]:
             "no machine and no network was given: network.toml holds the fewest links and losses that predict what was "
             "left out; how large they are together is assumed"
         )
+        odd = [t["name"] for t in tests if t["role"] != "hold-out" and t["name"] not in document["learnt_from"]]
+        if odd:
+            remarks.append(f"not learnt from {', '.join(odd)}: without that the others predict each other far better")
     elif document["invented_network"]:
         remarks.append(
             "no machine and no network was given: network.toml is made from the columns, its numbers are "
