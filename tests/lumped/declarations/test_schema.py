@@ -120,7 +120,7 @@ def test_schemas_for_editors_are_written_when_asked_with_bounds_and_the_families
     reference = written["network"]["properties"]["losses"]["additionalProperties"]["properties"]["reference_degC"]
     assert (reference["minimum"], reference["maximum"]) == (COLDEST, HOTTEST)
     shaft = written["machine"]["properties"]["geometry"]["properties"]["shaft"]["properties"]
-    assert shaft["diameter_mm"] == {"description": "shaft (mm)", "type": "number", "minimum": 5.0, "maximum": 500.0}
+    assert shaft["diameter_mm"] == {"description": "shaft (mm)", "type": "number", "minimum": 1.0, "maximum": 500.0}
 
 
 def test_the_page_of_keys_is_the_schemas():
