@@ -60,9 +60,10 @@ def seen(label: Answer, answer: Answer, size: float) -> bool | None:
 def confidently_wrong(label: Answer, answer: Answer) -> bool | None:
     """One name alone, and it is none of what is hidden; a thermometer or input accused alone is a name as well."""
     alone = [g[0].split(" in ")[0] for g in answer["groups"][:1] if len(g) == 1]
+    right = any(meets(names, alone) for names in label["right"])
     if answer["verdict"] == "data":
-        return not fault_found(label, answer) and (bool(alone) or not answer["groups"])
-    return answer["verdict"] == "named" and not any(meets(names, alone) for names in label["right"])
+        return not (right or fault_found(label, answer)) and (bool(alone) or not answer["groups"])
+    return answer["verdict"] == "named" and not right
 
 
 def pair_as_group(label: Answer, answer: Answer) -> bool | None:
@@ -123,7 +124,9 @@ def fault_found(label: Answer, answer: Answer) -> bool | None:
     place = label["truth"][0].split("@")[1]
     kinds = {name.split("@")[0] for name in (label["truth"][0], *(n for names in label["right"] for n in names))}
     plain = bool(kinds & {"frozen", "clipped", "unit"})
-    hit = (plain and place in answer["words"]) or any(fault_of(label["truth"][0], e) for e in reported(answer)[:3])
+    hit = (plain and place in answer["words"]) or any(
+        fault_of(label["truth"][0], e.split(" in ")[0]) for e in reported(answer)[:3]
+    )
     return answer["verdict"] == "data" and hit
 
 
