@@ -46,10 +46,8 @@ MAIN = 0.3  # of what moves a node: such a term is tried last, whatever it follo
 TURNS, STILL = 12, 3e-3  # of capacities and coefficients, and the relative change that ends them
 SPREAD = (0.2, 1.0)  # prior of a number, in powers of e: the folds share most of their tests; a first network's own
 FEWEST_FOLDS, OUTLYING = 3, 3.0  # of two nobody knows which is right; three times the usual misfit counts in full
-ODD, ODD_GAIN = (
-    2.5,
-    0.8,
-)  # times the others' error is that of a test in which something else held; times theirs, without
+ODD = 2.5  # times the others' error is that of a test in which something else held
+ODD_GAIN = 0.8  # times their error with it is what the others come to without
 ODD_COUNTS = 0.1  # of a test: what counts less teaches nothing
 ROUNDS = 3  # of such weights: a bad test is in the fits by which the good ones are judged
 LEAST_K = 0.01  # an error below it is as good as none: readings are rounded to more
@@ -72,8 +70,7 @@ def learn_network(case: Case, first: FirstNetwork) -> FirstNetwork:
     every_test = _TermTable.of(folds, columns, form, places, case.model.network.measures)
     heat = np.mean([loss_factors(r.u).mean(axis=0) for fold in folds for r in fold], axis=0)
     every = range(len(folds))
-    tables = every_test.credible()
-    needed, table, left_out = _least_terms(tables, folds, tables[-1].credit)
+    needed, table, left_out = _least_terms(every_test.credible(), folds)
     while (fewer := _without_odd(table, folds, left_out)) is not None:
         needed, table, left_out = fewer
     fits = [table.fit(every, needed), *(table.fit([j for j in every if j != i], needed) for i in every)]
@@ -101,12 +98,13 @@ def learn_network(case: Case, first: FirstNetwork) -> FirstNetwork:
 
 
 def _least_terms(
-    tables: Sequence[_TermTable], folds: Sequence[Sequence[Record]], credit: Array
+    tables: Sequence[_TermTable], folds: Sequence[Sequence[Record]]
 ) -> tuple[NDArray[np.bool_], _TermTable, Array]:
-    """The terms that predict best, from the table of which they come, and the error of each fold left out (K).
+    """The terms that predict best, the table that they come from, and the error of each fold left out (K).
 
-    credit : (n_fold,) how much each counts
+    tables : all are judged by what the last one says that each fold counts
     """
+    credit = tables[-1].credit
     ways = [[(*way, table) for way in _needed_terms(table, folds, credit)] for table in tables]
     few, many = (min(alike, key=lambda way: way[0]) for alike in zip(*ways, strict=True))
     _, needed, table = many if many[0] < MANY * few[0] else few
@@ -126,10 +124,9 @@ def _without_odd(
     if members.size <= FEWEST_FOLDS:
         return None
     worst = members[np.argmax(left_out[members])]
-    others, weight = members[members != worst], np.arange(len(folds)) != worst
-    normal = [[w * N for N in fold] for w, fold in zip(weight, table.normal, strict=True)]
-    candidate = replace(table, normal=normal, weight=_weights(normal))
-    needed, candidate, errors = _least_terms([candidate], folds, table.credit * weight)
+    others, alone = members[members != worst], np.arange(len(folds)) == worst
+    weights = np.where(alone, 0.0, np.ones((len(table.nodes), 1)))
+    needed, candidate, errors = _least_terms([table.weighted(weights, np.where(alone, 0.0, table.credit))], folds)
     now, before = (np.exp(np.mean(np.log(e[others]))) for e in (errors, left_out))
     return (needed, candidate, errors) if now < ODD_GAIN * before and errors[worst] > ODD * now else None
 
@@ -291,13 +288,17 @@ class _TermTable:
         weights = np.array([_weights_of_folds(each, -1 - self.shape[2]) for each in zip(*self.normal, strict=True)])
         if (weights == 1.0).all():
             return [self]
-        normal = [
-            [w * N for w, N in zip(ws, fold, strict=True)] for ws, fold in zip(weights.T, self.normal, strict=True)
-        ]
         credit = weights.min(axis=0)
         if credit.sum() < FEWEST_FOLDS - 1:  # what most tests do is the rule
             credit = self.credit
-        return [self, replace(self, normal=normal, weight=_weights(normal), credit=credit)]
+        return [self, self.weighted(weights, credit)]
+
+    def weighted(self, weights: Array, credit: Array) -> _TermTable:
+        """The same with its lessons counted less.  weights : (n_node, n_fold)"""
+        normal = [
+            [w * N for w, N in zip(ws, fold, strict=True)] for ws, fold in zip(weights.T, self.normal, strict=True)
+        ]
+        return replace(self, normal=normal, weight=_weights(normal), credit=credit)
 
     def fit(self, lessons: Sequence[int], active: NDArray[np.bool_]) -> tuple[Array, Array]:
         """Coefficients of all terms and capacities of the nodes, whose geometric mean is 1.  active : may be > 0"""
