@@ -498,14 +498,16 @@ def with_members(evidence: Evidence, members: Sequence[int]) -> tuple[Network, U
 def log_bayes(evidence: Evidence, fit: Fit, members: Sequence[int]) -> float:
     """Log evidence over that of nothing: the gain at the optimum, times what the prior of the amplitudes gives there.
 
-    The curvature of what calibration moves is taken to be the same for all.
+    Calibrated parameters are integrated by their curvature at either optimum: what leaves them wider gains by that.
     """
     free, p = fitted_members(evidence, members), evidence.p
+    curvature = [np.linalg.slogdet(f.H[:p, :p])[1] for f in (evidence.fit, fit)]
+    gain = evidence.fit.objective - fit.objective + 0.5 * float(curvature[0] - curvature[1])
     if not free:
-        return evidence.fit.objective - fit.objective
+        return gain
     h, a, wide = evidence.hypothesis(free), fit.theta[p:], fit.unknowns.sd[p:]
     # the fit's own wide prior of the amplitudes is taken out of its objective, and the usual one integrated instead
-    gain = evidence.fit.objective - (fit.objective - 0.5 * float(np.sum((a / wide) ** 2)))
+    gain += 0.5 * float(np.sum((a / wide) ** 2))
     v = amplitude_covariance(fit, p, wide)
     if np.all(np.abs(a) < ABSENT * h.scale):  # what moved is the calibration, which may go on without them as well
         gain = min(gain, 0.0)
