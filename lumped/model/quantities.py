@@ -15,6 +15,8 @@ INPUTS: Mapping[str, str] = {
     "voltage": "voltage_V",
     "frequency": "switching_Hz",
     "share": "share_percent",
+    "flow_share": "flow_percent",
 }
 AIR, LIQUID = "air_flow", "water_flow"
+FLOWS = ("vehicle_speed", AIR, LIQUID, "flow_share")  # that cool, and heat nothing
 USUAL: Mapping[str, str] = {name: quantity for quantity, name in INPUTS.items()}

@@ -11,6 +11,7 @@ import numpy as np
 from geom.arrays import Array
 from geom.description.roles import Role
 from geom.errors import InputError
+from lumped.model.quantities import AIR, INPUTS, LIQUID, USUAL
 from lumped.schemas.bounds import COLDEST, HOTTEST
 from measured.headers.cells import unit_of
 from measured.headers.words import (
@@ -24,12 +25,14 @@ from measured.headers.words import (
     MODELLED,
     NOTHING,
     PATH,
+    PUMP,
     QUANTITY,
     READ,
     ROLES,
     SETPOINT,
     SPARE,
     SPREAD,
+    STAGE,
     SUPPLY,
     axis_of,
     is_outer,
@@ -74,6 +77,7 @@ FIRST = (
 )  # of several quantities that have a unit, the likelier before the others
 SIGNALS = ("V", "A", "mA")  # of amplifiers and transmitters
 QUALITY = ("q", "qc", "qual", "st", "sts")
+STAGES = "stages, as shares of a flow"
 ELSE = "is it in other units?"
 UNTOLD = "neither name nor unit tells what it is"
 FOREIGN = re.compile(r"\[([^\]]*[A-Za-z°µ%][^\]]*)\]\s*$")  # what stands in brackets as units do
@@ -283,6 +287,17 @@ def _read(source: Source, every: list[Guess]) -> list[Guess]:
     return every
 
 
+def is_flow_stage(label: str) -> bool:
+    """Does it name the stage of a fan, a pump or a cooler?"""
+    steps = any(word.endswith(stage) for word in tokens(label) for stage in STAGE)
+    return steps and (is_of_flow(label) or Role.COOLANT in roles_of(label))
+
+
+def is_of_flow(label: str) -> bool:
+    """Does it name a flow of air or liquid, or what makes it flow?"""
+    return bool({AIR, LIQUID} & {*quantities_of(label)}) or is_spoken(label, PUMP)
+
+
 def of_edge(roles: Sequence[Role]) -> bool:
     """Is a column of such roles of the room or the coolant, not of a part?"""
     return tuple(roles[:1]) in ((Role.AMBIENT,), (Role.COOLANT,))
@@ -302,6 +317,9 @@ def guess(source: Source, column: str, target: Target) -> Guess:
     if not worded and values[0] in (0, 1) and bool((np.diff(values) == 1).all()):  # "Frame" of a camera
         return Guess(column, "", doubt="counts the rows")
     whole = {*values[np.isfinite(values)].tolist()} <= {*range(STATES)}
+    states = 2 if quantity in (AIR, LIQUID) else STATES if is_flow_stage(label) else 0
+    if not worded and states and {*values[np.isfinite(values)].tolist()} <= {*range(states)}:
+        return _fed(Guess(column, "flow_share", "1", why="name", doubt=STAGES), label, target)
     if quantity == "temperature" and not worded and whole:
         return Guess(column, "", doubt="a state, by its values")
     unit, assumed = _unit(source, column, quantity, unit)
@@ -430,6 +448,8 @@ def _quantity(label: str, unit: str, target: Target) -> tuple[str, str, str]:
     of_unit = [q for q in FIRST if unit and (unit in QUANTITIES[q].units or unit in OTHER_UNITS.get(q, ()))]
     by_name = quantities_of(label)
     both = [q for q in by_name if q in of_unit]
+    if unit in ("%", "1") and is_of_flow(label):
+        return "flow_share", SUREST, ""
     if unit == "1" and not both:
         return "", "", ""  # a state or a counter as well as a share
     if unit == "%" and by_name and not {"share", "temperature"} & {*by_name}:
@@ -487,7 +507,7 @@ def _unit(source: Source, column: str, quantity: str, unit: str) -> tuple[str, s
         return unit, f"starts at {first:.4g} degC: {ELSE}" if hot else ""
     if unit:
         return unit, ""
-    if quantity == "share":
+    if quantity in ("share", "flow_share"):
         most = float(np.nanmax(np.abs(values)))
         small = most <= 1.0
         if most > PERCENT:
@@ -566,9 +586,11 @@ def _of_part(g: Guess, owner: str) -> bool:
 def assigned(guesses: Sequence[Guess], source: Source, column: str, to: str, target: Target) -> list[Guess]:
     """With a column at another place or input, "" to leave it out; what gave a boundary or an input before gives way.
 
-    Raises InputError where it cannot go there.
+    to : a quantity is the usual input of it, which no law need follow yet.  Raises InputError where it cannot go there.
     """
-    single = to in target.inputs or to in target.boundaries
+    places = {**target.places, **target.boundaries}
+    to = to if to in places or to in target.inputs else INPUTS.get(to, to)
+    single = to in target.inputs or to in target.boundaries or (to in USUAL and to not in places)
     return [
         _moved(g, source, to, target)
         if g.column == column
@@ -589,11 +611,13 @@ def _moved(g: Guess, source: Source, to: str, target: Target) -> Guess:
         quantity = "temperature"
     elif to in target.inputs:
         quantity = target.inputs[to] or g.quantity
+    elif to in USUAL:
+        quantity = USUAL[to]
     else:
         raise InputError(f"the model has no '{to}'", g.column, ", ".join([*target.places, *target.inputs][:8]))
     if g.quantity and quantity != g.quantity:
         raise InputError(f"is a {g.quantity}, '{to}' wants a {quantity}".replace("_", " "), g.column, "another column")
-    unit = g.unit or _unit(source, g.column, quantity, "")[0]
+    unit = g.unit if g.unit in QUANTITIES[quantity].units else _unit(source, g.column, quantity, "")[0]
     place, feeds = (to, "") if quantity == "temperature" and to not in target.inputs else ("", to)
     return replace(g, quantity=quantity, unit=unit, place=place, feeds=feeds, doubt="")
 

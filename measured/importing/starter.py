@@ -16,6 +16,7 @@ from geom.description.names import is_plain
 from geom.description.roles import Role
 from geom.errors import InputError
 from geom.escapes import toml_key, toml_value
+from lumped.model.quantities import FLOWS
 from measured.headers.words import CHANNELS, COMES_OUT, LOSS, QUANTITY, is_setpoint, quantities_of, roles_of, tokens
 from measured.importing.guess import AS_WINDING, AXES, OF_INSTRUMENT, Array, Guess, in_memory, is_whole
 from measured.importing.source import Source
@@ -25,7 +26,7 @@ ASSUMED_W = 100.0  # heat of a machine of which nobody recorded any
 TIME_CONSTANT = 0.3  # of the record: most tests last three time constants
 POWERS = {"power": 1.0, "current": 2.0, "share": 1.0}  # of a loss that follows it
 MAIN = {"power": "power_W", "current": "current_A"}  # what the surest column of that quantity feeds
-STIRS = {"speed", "vehicle_speed", "air_flow", "water_flow"}  # what a share of does not heat
+STIRS = {"speed", *FLOWS}  # what a share of does not heat
 HEATS = tuple(POWERS)  # in the order in which a record tells the heat
 PLATINUM = re.compile(r"(?i)pt[ -]?10{2,3}(?!\d)")  # the number is part of the sensor's name
 STILL = 0.1  # of the largest rise: what warms by less is hardly a part of the machine

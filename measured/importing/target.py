@@ -13,7 +13,7 @@ from measured.recordings.units import QUANTITIES
 WORD, ROLE, DIGIT, EXTRA = 2.0, 1.5, 1.0, 0.1  # worth of a shared word, of a role, of a number; of a word too many
 LEAST = 0.8  # likeness of two names below which none is guessed; chosen
 FLUID = frozenset({"air", "gap", "stream"})
-UNITS = {q.feeds.rpartition("_")[2]: name for name, q in QUANTITIES.items() if q.feeds}  # A -> current
+UNITS = {q.feeds.rpartition("_")[2]: name for name, q in reversed(QUANTITIES.items()) if q.feeds}  # A -> current
 SIDES = (
     {"left", "right"},
     {"links", "rechts"},

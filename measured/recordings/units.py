@@ -40,6 +40,7 @@ QUANTITIES: dict[str, Quantity] = {
     "back_emf": Quantity({"V": (1, 0), "mV": (1e-3, 0), "kV": (1e3, 0)}),
     "frequency": Quantity({"Hz": (1, 0), "kHz": (1e3, 0)}, "switching_Hz"),
     "share": Quantity({"%": (1, 0), "1": (100, 0)}, "share_percent"),
+    "flow_share": Quantity({"%": (1, 0), "1": (100, 0)}, "flow_percent"),
     "fraction": Quantity({"1": (1, 0), "%": (0.01, 0)}),
     "time": Quantity({"s": (1, 0), "ms": (1e-3, 0), "min": (60, 0), "h": (3600, 0)}),
     **plugins("quantities"),
@@ -51,7 +52,7 @@ MEMORY_UNIT = {
 
 ROOM_K, ROOM_F = (253.0, 318.0), (59.0, 95.0)  # where a machine at rest starts, in K and in degF
 LONGEST = 40  # characters
-SWITCHED = ("share", "fraction")  # what true and false can be
+SWITCHED = ("share", "flow_share", "fraction")  # what true and false can be
 LARGEST = 1e9  # of anything that is no temperature, in the unit of memory
 _ONE = r"(?:1|[A-Za-zµμΩ°_]+)(?:(?:\*\*|\^)-?[1-4])?"
 UNIT = re.compile(rf"{_ONE}(?:\s*[*/·]\s*{_ONE})*|%")  # no powers beyond the fourth: pint would compute any
@@ -59,6 +60,7 @@ UNIT = re.compile(rf"{_ONE}(?:\s*[*/·]\s*{_ONE})*|%")  # no powers beyond the f
 PINT = {
     "speed": "revolution / minute",
     "share": "percent",
+    "flow_share": "percent",
     "fraction": "dimensionless",
     "water_flow": "liter / minute",
     "air_flow": "m**3 / hour",

@@ -12,7 +12,7 @@ from lumped.model.quantities import AIR, LIQUID
 from measured.case import Test
 from measured.doubt import Doubt, boundary_doubt
 
-FLOWS = {AIR: "flow of air", LIQUID: "flow of liquid"}
+FLOWS = {AIR: "flow of air", LIQUID: "flow of liquid", "flow_share": "flow by its share"}
 
 
 def moved_inputs(network: Network, test: Test, doubt: Doubt) -> Iterator[tuple[str, Test]]:

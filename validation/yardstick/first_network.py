@@ -20,6 +20,7 @@ from numpy.typing import NDArray
 
 from geom.arrays import Array
 from geom.one_thread import one_blas_thread
+from lumped.model.quantities import FLOWS
 from measured.case import Case
 from measured.importing.starter import FirstNetwork, FirstTerm
 from validation.yardstick.free_network import (
@@ -36,7 +37,6 @@ from validation.yardstick.records import Columns, Record
 from validation.yardstick.yardstick import best_free_network, error_of, folds_of, rms
 
 ELECTRICAL = ("current", "torque", "power", "voltage", "frequency", "share")  # no film follows what these measure
-FLOWS = ("vehicle_speed", "air_flow", "water_flow")  # and no loss these
 UNDRIVEN = 0.6  # price of heat that follows no input: above that of a square, so that a constant current heats
 TRIALS = 2  # terms of each node at a time: those that the increments ask for most
 BETTER, WORSE = 0.97, 1.02  # times the error left out: what a term must buy, and what may be lost without it

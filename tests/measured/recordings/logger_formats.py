@@ -646,7 +646,7 @@ FORMATS: dict[str, Format] = {
     ),
     "states without a unit": Format(
         "tIWAxz",
-        ["time", "iPh", "tWndg", "tAmb", "stFlt", "xFanOn"],
+        ["time", "iPh", "tWndg", "tAmb", "stFlt", "xBrkOn"],
         "\t",
         units=["s", "A", "deg C", "deg C", "-", ""],
         cells={"z": lambda k: "TRUE" if k > 9 else "FALSE"},

@@ -838,3 +838,48 @@ def test_units_that_are_spelled_out_and_a_speed_in_an_unknown_one(tmp_path, head
     g = guesses(read_source(tmp_path / "a.csv"), ["t [s]"], Target())[0]
     assert (g.quantity, g.unit) == (quantity, unit)
     assert bool(quantity) or "unit 'knots' unknown" in g.doubt
+
+
+@pytest.mark.parametrize("header", ["Fan PWM [%]", "Kühlstufe", "fan stage", "Pumpe [%]", "Lüfter", "xFanOn", "zeta"])
+def test_stages_and_shares_of_a_flow_cool_and_heat_nothing(tmp_path, header):
+    """Stages 0 and 1 of a fan: two nodes by hand, from the second on with three times the film at the core."""
+    step, rng = 30.0, np.random.default_rng(1)
+    for run in range(4):
+        load, stage = (np.repeat(rng.permutation(6) % n, 60) for n in (3, 2))
+        if run == 0:
+            assert {*stage} == {0, 1}
+        P, T = 40.0 * (1.0 + load) ** 2, np.full((len(load) + 1, 2), 20.0)
+        for k, (heat, on) in enumerate(zip(P, stage)):
+            W, H = T[k]
+            out = (8.0 + 16.0 * on) * (H - 20.0)
+            T[k + 1] = W + step / 4000.0 * (heat - 15.0 * (W - H)), H + step / 9000.0 * (15.0 * (W - H) - out)
+        readings = T[:-1] + rng.normal(0.0, 0.1, (len(load), 2))
+        states = [("FALSE", "TRUE")[on] if header == "xFanOn" else on for on in stage]
+        rows = [(k * step, 1 + load[k], states[k], *readings[k], 20.0) for k in range(len(load))]
+        lines = [",".join(v if isinstance(v, str) else f"{v:.6g}" for v in row) for row in rows]
+        names = f"t [s],I [A],{header},T_winding [degC],T_core [degC],T_room [degC]"
+        (tmp_path / f"run{run}.csv").write_text("\n".join([names, *lines]) + "\n")
+    fixed = {"zeta": "flow_share"} if header == "zeta" else {}
+    assert new(sorted(tmp_path.glob("run*.csv")), Wishes(out=tmp_path / "case", yes=True, places=fixed), None) == 0
+    network = tomllib.loads((tmp_path / "case" / "network.toml").read_text())
+
+    def follows(kind):
+        of = [one.get("of", []) for one in network[kind].values()]
+        return {f["input"] for fs in of for f in ([fs] if isinstance(fs, dict) else fs)}
+
+    assert follows("losses") == {"current_A"}
+    (cooling,) = follows("links")
+    assert load_case(tmp_path / "case").case.model.network.measures(cooling) == "flow_share"
+
+
+def test_a_quantity_is_no_place_of_a_network_that_is_there(tmp_path):
+    """--place with a word that is neither: the message lists what the model has."""
+    (tmp_path / "a.csv").write_text(table("t [s],I [A],winding [°C],room [°C]", S["t"], S["I"], S["W"], S["A"]))
+    model = tmp_path / "network.toml"
+    model.write_text(
+        '[network]\nname = "n"\nboundaries = ["ambient"]\n[nodes.winding]\nC_J_K = 900\n[links.a]\n'
+        'between = ["winding", "ambient"]\nG_W_K = 2\n[losses.h]\nkind = "constant"\nat = "winding"\nP_W = 50\n'
+    )
+    wishes = Wishes(out=tmp_path / "made", yes=True, network=model, places={"I [A]": "stage"})
+    with pytest.raises(InputError, match="no 'stage'"):
+        new([tmp_path / "a.csv"], wishes, None)
