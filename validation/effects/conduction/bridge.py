@@ -15,7 +15,6 @@ from lumped.model.sites import (
     touches,
     turning,
     turns,
-    windings,
     with_role,
 )
 from lumped.transfer.laws import Fixed
@@ -83,7 +82,8 @@ class CableConduction(Bridge):
 
     @classmethod
     def candidate_places(cls, scene: Scene) -> list[str]:
-        still = [place for place in windings(scene.network) if not turns(scene.network, place)]
+        wound = with_role(scene.network, Role.WINDING)
+        still = [place for place in wound if not turns(scene.network, place)]
         return still if ambient(scene.network) else []
 
     def pairs(self, network: Network) -> list[tuple[str, str]]:
@@ -117,9 +117,14 @@ class BenchConduction(Bridge):
         return [(self.place, bed) for bed in free_beds(network, self.place)]
 
 
-def shafts(network: Network) -> list[str]:
-    """What is the shaft; without one the rotor's iron or what else turns, for the shaft belongs to it."""
-    return with_role(network, Role.SHAFT) or with_role(network, Role.ROTOR) or turning(network)
+def shafts(scene: Scene) -> list[str]:
+    """What is the shaft; without one the rotor's iron or what else turns, for the shaft belongs to it.
+
+    Where nothing is known to turn and no speed was recorded, there is none.
+    """
+    network, moves = scene.network, "speed" in scene.recorded
+    known = with_role(network, Role.SHAFT) or with_role(network, Role.ROTOR)
+    return known or [p for p in turning(network) if moves or turns(network, p)]
 
 
 def heat_sink(network: Network) -> str | None:
@@ -148,7 +153,7 @@ class ShaftConduction(Bridge):
 
     @classmethod
     def candidate_places(cls, scene: Scene) -> list[str]:
-        return shafts(scene.network) if heat_sink(scene.network) else []
+        return shafts(scene) if heat_sink(scene.network) else []
 
     def pairs(self, network: Network) -> list[tuple[str, str]]:
         return [(self.place, str(heat_sink(network)))]

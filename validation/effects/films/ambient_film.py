@@ -5,7 +5,7 @@ from typing import ClassVar
 
 from lumped.model.network import Network
 from lumped.model.quantities import AIR
-from lumped.model.sites import AXLE, ambient, outside, role, turning, turns
+from lumped.model.sites import AXLE, ambient, outside, role, solids, turning, turns
 from lumped.transfer.laws import Fixed, InputPower, Law, Power
 from lumped.transfer.laws import Radiation as FourthPower
 from validation.effects.base import Effect, Scene, with_parameter
@@ -56,6 +56,14 @@ class ConstantConvection(AmbientFilm):
     prior_sd = 10.0
     high = 200.0
     confused_with = ("radiation", "convection.buoyant", "conduction.bench", "convection")
+    sits = "an outer part or face, or a node of no known role, with an ambient"
+
+    @classmethod
+    def candidate_places(cls, scene: Scene) -> list[str]:
+        """Also where the drawing has no way to the ambient, but nobody says that it is inside: leaks, leads, holders."""
+        network = scene.network
+        bare = [p.name for p in solids(network) if p.kind == "node" and role(network, p.name) is None]
+        return list(dict.fromkeys([*outside(network), *bare])) if ambient(network) else []
 
 
 class BuoyantConvection(AmbientFilm):
