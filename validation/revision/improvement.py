@@ -9,6 +9,7 @@ from textwrap import shorten
 
 import numpy as np
 
+from geom.text import counted
 from measured.case import Case
 from validation.calibration.calibrate import no_progress
 from validation.comparison.compare import Comparison, errors, pooled
@@ -76,10 +77,26 @@ class Step:
 
 
 @dataclass(frozen=True)
+class Refusal:
+    """What was tried and why it does not stand, in words."""
+
+    what: str
+    why: str
+
+    @classmethod
+    def of(cls, names: Sequence[str], step: Revision) -> Refusal:
+        return cls(" and ".join(effect(name).statement for name in names), step.why)
+
+    def __str__(self) -> str:
+        return f"not accepted: {self.what}, as {self.why}"
+
+
+@dataclass(frozen=True)
 class Improvement:
     """All stairs, the last diagnosis, and why it ended there; case : with the model of the last stair.
 
     plain_K : what the best plain model leaves (K rms) on tests left out in turn; NaN where none can be learnt
+    refused : what was tried at the end and did not predict, and why
     """
 
     case: Case
@@ -87,6 +104,7 @@ class Improvement:
     diagnosis: Diagnosis
     why: str
     plain_K: float = float("nan")
+    refused: Sequence[Refusal] = ()
 
     @property
     def adequate(self) -> bool:
@@ -98,6 +116,7 @@ class Improvement:
             "words": self.diagnosis.words,
             "adequate": self.adequate,
             "why": self.why,
+            "refused": [vars(r) for r in self.refused],
             "left_out_K": self.stairs[-1].left_out_K,
             "plain_left_out_K": self.plain_K if np.isfinite(self.plain_K) else None,
             "stairs": [s.document() for s in self.stairs],
@@ -159,9 +178,10 @@ def improve(
         progress(shorten(f"step {len(stairs)}: {diagnosis.words}", LINE, placeholder=" ..."))
         if supervisor.offer(diagnosis) and len(stairs) > most:
             return ended(case, stairs, diagnosis, f"{most} steps are enough for one run")
-        step, document, why = _added(case, supervisor, diagnosis, stairs[-1].left_out_K, progress)
+        refused = list[Refusal]()
+        step, document, why = _added(case, supervisor, diagnosis, stairs[-1].left_out_K, refused, progress)
         if step is None:
-            return ended(case, stairs, diagnosis, why)
+            return replace(ended(case, stairs, diagnosis, why), refused=refused)
         case = _with_step(case, step, supervisor, document, stairs)
 
 
@@ -187,10 +207,18 @@ def rise_words(stairs: Sequence[Step]) -> str:
 
 
 def _added(
-    case: Case, supervisor: Supervisor, diagnosis: Diagnosis, left_out: float, progress: Progress
+    case: Case,
+    supervisor: Supervisor,
+    diagnosis: Diagnosis,
+    left_out: float,
+    refused: list[Refusal],
+    progress: Progress,
 ) -> tuple[Revision | None, Mapping[str, float | str], str]:
-    """The first of what is missing that is chosen and accepted, and its evidence; or None, and why."""
-    why: list[str] = []
+    """The first of what is missing that is chosen and accepted, and its evidence; or None, and why.
+
+    refused : grows by what is tried and does not predict
+    """
+    why = diagnosis.words
     for i in range(max(len(diagnosis.groups), 1)):
         choice = supervisor.offer(replace(diagnosis, groups=diagnosis.groups[i:], named=diagnosis.named[i:]))
         choice = tuple(c for c in choice if not _stands(case, c.effect))  # larger than it is: nothing to add
@@ -198,16 +226,19 @@ def _added(
             break
         name = supervisor.choose(diagnosis, choice)
         if name is None:
-            why.append(f"not added: {' or '.join(c.words for c in choice)}")
+            why = f"not added: {' or '.join(c.words for c in choice)}"
             break
         for names in ((name,), needed_together(diagnosis, name)):
             if names and not any(_stands(case, one) for one in names):
                 step = add(case, names, progress)
                 if step.accepted:
                     return step, evidence(diagnosis, next(c for c in choice if c.effect == name)), ""
-                why.append(refusal(names, step))
-    further, document, refusals = further_step(case, supervisor, diagnosis, left_out, progress)
-    return further, document, "; ".join([*(why or [diagnosis.words]), *refusals])
+                refused.append(Refusal.of(names, step))
+                why = str(refused[0])
+    further, document, more = further_step(case, supervisor, diagnosis, left_out, progress)
+    refused += more
+    others = len(refused) - (why == str(refused[0])) if refused else 0
+    return further, document, f"{why}; {counted(others, 'other explanation')} did not predict either" if others else why
 
 
 def _stands(case: Case, name: str) -> bool:
@@ -218,8 +249,8 @@ def _stands(case: Case, name: str) -> bool:
 
 def further_step(
     case: Case, supervisor: Supervisor, diagnosis: Diagnosis, left_out: float, progress: Progress
-) -> tuple[Revision | None, Mapping[str, float | str], list[str]]:
-    """What else is accepted where the diagnosis offers nothing that is; or None, and what stops it, in words.
+) -> tuple[Revision | None, Mapping[str, float | str], list[Refusal]]:
+    """What else is accepted where the diagnosis offers nothing that is; or None, and what was refused.
 
     Where plain models are better by more than a tenth: the likeliest sets, if no name was given. Then all that a free
     network has and the model lacks, in one step, since terms that need each other are worth nothing alone; then each.
@@ -230,7 +261,7 @@ def further_step(
     if yard is None:
         return None, {}, []
     best, free = min(yard.left_out.values()), yard.left_out["free_network"]
-    why, trials = list[str](), list[Trial]()
+    refused, trials = list[Refusal](), list[Trial]()
     if best * WORTH < left_out and not diagnosis.groups:
         likely = [o for o in diagnosis.odds if o.effects][:LIKELY]
         trials += [(o.effects, {"probability": o.probability, "verdict": diagnosis.verdict}) for o in likely]
@@ -244,14 +275,9 @@ def further_step(
     for names, document in {names: document for names, document in trials if names}.items():
         step = None if any(_stands(case, one) for one in names) else _present(case, names, progress)
         if step and step.accepted:
-            return step, document, why
-        why += [refusal(names, step)] if step else []
-    return None, {}, why
-
-
-def refusal(names: Sequence[str], step: Revision) -> str:
-    """What was tried and why it does not stand, in words."""
-    return f"not accepted: {' and '.join(effect(name).statement for name in names)}, as {step.why}"
+            return step, document, refused
+        refused += [Refusal.of(names, step)] if step else []
+    return None, {}, refused
 
 
 def _present(case: Case, names: Sequence[str], progress: Progress) -> Revision:

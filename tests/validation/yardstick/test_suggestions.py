@@ -131,3 +131,14 @@ def test_where_no_name_is_given_the_likeliest_sets_are_tried_and_the_criterion_d
     said = SimpleNamespace(groups=(), odds=(SimpleNamespace(effects=(), probability=0.1), *odds), verdict="outside")
     step, evidence, _ = further_step(poorer, Supervisor(best, suggest=True), said, 9.0, no_progress)
     assert (step.effect, step.accepted, evidence["probability"]) == ("convection.constant@body", True, 0.3)
+
+
+def test_what_was_tried_last_is_a_table_and_one_clause_of_the_sentence(case):
+    """A supervisor that offers nothing: what a free network has is tried, and does not predict better than a guess."""
+    poorer = without(case, ("body", "ambient"))
+    odds = [SimpleNamespace(effects=(f"{kind}@core",), probability=0.2) for kind in ("mass", "loss.constant")]
+    said = SimpleNamespace(groups=(), odds=tuple(odds), verdict="outside")
+    _, _, refused = further_step(poorer, Supervisor(best, suggest=True), said, 9.0, no_progress)
+    assert [r.what for r in refused] == [effect(o.effects[0]).statement for o in odds][: len(refused)]
+    assert all(str(r) == f"not accepted: {r.what}, as {r.why}" for r in refused)
+    assert refused

@@ -6,17 +6,7 @@ from dataclasses import dataclass
 
 from geom.description.roles import Role
 from lumped.model.network import Network
-from lumped.model.sites import (
-    ambient,
-    boundaries,
-    near_pairs,
-    outside,
-    solids,
-    touches,
-    turning,
-    turns,
-    with_role,
-)
+from lumped.model.sites import ambient, boundaries, near_pairs, outside, solids, touches, turning, turns, with_role
 from lumped.transfer.laws import Fixed
 from validation.effects.base import Effect, Scene, with_parameter
 from validation.effects.build import conductance_scale, exchange, place_pair
