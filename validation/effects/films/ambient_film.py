@@ -60,7 +60,7 @@ class ConstantConvection(AmbientFilm):
 
     @classmethod
     def candidate_places(cls, scene: Scene) -> list[str]:
-        """Also where the drawing has no way to the ambient, but nobody says that it is inside: leaks, leads, holders."""
+        """Also where the drawing has no way to the ambient, and nobody says that it is inside: leaks, leads."""
         network = scene.network
         bare = [p.name for p in solids(network) if p.kind == "node" and role(network, p.name) is None]
         return list(dict.fromkeys([*outside(network), *bare])) if ambient(network) else []
