@@ -28,8 +28,7 @@ from geom.importing.motor_cad import read_motor_cad
 from geom.importing.pyleecan import read_pyleecan
 from geom.plugins import plugins
 from geom.solids.step import machine_in_step
-
-LARGEST_MM = 1e6  # as all lengths of a machine file
+from geom.solids.step_prisms import LARGEST_MM
 
 LIBRARY = Path(__file__).parent / "machines"
 _HEADER = ("name", "family", "description", "source", "assumed", "like", "without")
