@@ -50,6 +50,9 @@ TOML = {
     **{f"length of {v}": length(v) for v in ("nan", "inf", "1e-300", "1e300", "-150.0", '"150"', "2026-01-01")},
     **{f"{v[:9]} slots": slots(v) for v in ("1000000000", "9" * 5000, "true", "17.5", "0")},
     "a million poles": changed("poles = 16", "poles = 1000000"),
+    **{f"rated speed of {v}": changed("speed_rpm = 383.0", f"speed_rpm = {v}") for v in ('"fast"', "nan", "[1]", "-1")},
+    "rated power of a day": changed("power_W = 7e3", "power_W = 2026-01-01"),
+    "turns without end": changed("per_slot = 328", "per_slot = 1e300"),
     "watts that are no number": changed("hysteresis_W = 45", "hysteresis_W = nan"),
     "resistance of nothing": changed("R20_ohm = 0.88", "R20_ohm = -1"),
     "loss with the name of a formula": f'{PMSM}\n[losses."=1+1"]\nkind = "constant"\nat = "winding.copper"\nP_W = 1\n',
@@ -127,6 +130,7 @@ BESIDE = {
     "nothing left": '[import]\nleave_out = ["*"]\n',
     "pattern of 2000 stars": f'[import]\nleave_out = ["{"*a" * 2000}"]\n',
     "name of a folder above": '[machine]\nname = "../PWNED"\n[materials]\nwinding = "winding"\n',
+    "rated speed in words": '[ratings]\nspeed_rpm = "fast"\n',
     "materials in a list": '[materials]\nwinding = ["winding"]\n',
 }
 SOLIDS = {
