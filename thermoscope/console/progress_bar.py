@@ -178,9 +178,9 @@ class ProgressBar:
 
         Of this very case it is what they took over what they took then; but what was prepared then may have been kept,
         so that a second run prepares in a third of the time and fits as long as before. Of another, fits say that of
-        fits, and the error of the time steps, for which the model is run, that of small cases and large ones; other stages say only
-        as much as they were of its work: a long file is read forty times as long, and the yardstick after it takes
-        twice as long. What others take of the computer slows all stages alike.
+        fits, and the error of the time steps, for which the model is run, that of small cases and large ones; other
+        stages say only as much as they were of its work: a long file is read forty times as long, and the yardstick
+        after it takes twice as long. What others take of the computer slows all stages alike.
         """
         if self.same_case:
             usual = sum(min(self.last[s], t) if _word(s) in PREPARING else self.last[s] for s, t in took.items())
