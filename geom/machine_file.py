@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import Any
 
 from geom.description.bases import based
-from geom.description.machine import SECTIONS, Machine
+from geom.description.machine import ENVELOPE, SECTIONS, Machine, check_ratings
 from geom.description.materials import material
 from geom.description.names import checked_name
 from geom.description.outlines import read_outlines
@@ -28,8 +28,7 @@ from geom.importing.motor_cad import read_motor_cad
 from geom.importing.pyleecan import read_pyleecan
 from geom.plugins import plugins
 from geom.solids.step import machine_in_step
-
-LARGEST_MM = 1e6  # as all lengths of a machine file
+from geom.solids.step_prisms import LARGEST_MM
 
 LIBRARY = Path(__file__).parent / "machines"
 _HEADER = ("name", "family", "description", "source", "assumed", "like", "without")
@@ -101,6 +100,7 @@ def machine_from(sections: Mapping[str, Any], where: str = "machine") -> Machine
             raise InputError(f"unknown section [{section}]", where, f"known: {', '.join(SECTIONS)}")
         if not isinstance(table, Mapping):
             raise InputError(f"{section!r} is not a section", where, f"write [{section}]")
+    check_ratings(sections, where)
     header = sections.get("machine", {})
     family = _family(header, where)
     table = sections.get("geometry", {})
@@ -182,7 +182,7 @@ def _overlaid(table: Mapping[str, Any], above: Mapping[str, Any]) -> dict[str, A
 
 def _refuse_outside_envelope(machine: Machine, where: str) -> None:
     """[ratings] envelope_mm = [length, width, height], where given, holds the whole machine."""
-    envelope = machine.sections.get("ratings", {}).get("envelope_mm")
+    envelope = machine.sections.get("ratings", {}).get(ENVELOPE)
     if envelope is None:
         return
     place = f"{where} [ratings] envelope_mm"

@@ -17,11 +17,15 @@ CURES = {errno.ENAMETOOLONG: "a shorter name", errno.ELOOP: "a file, not a link 
 YOUNG_S = 5.0  # a folder may be made and not yet locked
 
 
-def write_whole(path: Path, text: str | bytes) -> Path:
-    """Write beside the target, then rename: a reader sees the old file or the new one, never half of it."""
+def write_whole(path: Path, text: str | bytes | Iterator[str]) -> Path:
+    """Write beside the target, then rename: a reader sees the old file or the new one, never half of it.
+
+    text : of a large file piece by piece
+    """
     try:
-        with atomic_write(path) as partial:
-            partial.write_bytes(text if isinstance(text, bytes) else text.encode("utf-8", "backslashreplace"))
+        with atomic_write(path) as partial, partial.open("wb") as file:
+            for part in [text] if isinstance(text, str | bytes) else text:
+                file.write(part if isinstance(part, bytes) else part.encode("utf-8", "backslashreplace"))
     except OSError as fault:
         right = "a folder you may write to, with room in it"
         raise InputError(

@@ -28,6 +28,17 @@ SECTIONS = (
     "calibration",
     "bases",
 )
+LARGEST_RATING = 1e9  # in the unit of its key, as of all that a recording may hold
+ENVELOPE = "envelope_mm"
+
+
+def check_ratings(sections: Mapping[str, Any], where: str) -> None:
+    """InputError where [ratings] holds anything but numbers and an envelope."""
+    for key, value in sections.get("ratings", {}).items():
+        fits = isinstance(value, int | float) and not isinstance(value, bool) and 0.0 <= value <= LARGEST_RATING
+        if key != ENVELOPE and not fits:
+            right = f"a number from 0 to {LARGEST_RATING:g}"
+            raise InputError(f"{key} = {str(value)[:40]!r} is not possible", f"{where} [ratings]", right)
 
 
 @dataclass(frozen=True)

@@ -117,8 +117,16 @@ def _document(path: Path) -> Node:
     def refuse(word: str) -> None:
         raise ValueError(f"{word} is no number of JSON")
 
+    def table(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
+        out = dict[str, Any]()
+        for key, value in pairs:
+            if key in out:
+                raise ValueError(f"{key[:40]!r} is given twice")
+            out[key] = value
+        return out
+
     try:
-        document = json.loads(read_text(path, RIGHT), parse_constant=refuse)
+        document = json.loads(read_text(path, RIGHT), parse_constant=refuse, object_pairs_hook=table)
     except (ValueError, RecursionError) as fault:
         raise InputError(f"not readable as JSON: {str(fault)[:80]}", str(path), RIGHT) from None
     if not isinstance(document, dict):

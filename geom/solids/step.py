@@ -27,7 +27,7 @@ from fnmatch import fnmatchcase
 from pathlib import Path
 from typing import Any
 
-from geom.description.machine import SECTIONS, Machine, step_sidecar
+from geom.description.machine import SECTIONS, Machine, check_ratings, step_sidecar
 from geom.description.materials import material
 from geom.description.names import checked_name
 from geom.description.part import Part
@@ -123,6 +123,7 @@ def _read_sidecar(path: Path) -> dict[str, Any]:
         for key in table:
             if key not in _KEYS.get(section, (key,)):
                 raise InputError(f"unknown key {key!r}", f"{path} [{section}]", f"known: {', '.join(_KEYS[section])}")
+    check_ratings(sidecar, str(path))
     return sidecar
 
 

@@ -26,6 +26,7 @@ if TYPE_CHECKING:
     import cadquery as cq
 
 RIGHT = "a STEP assembly of named solids"
+LARGEST_MM = 1e6  # as all lengths of a machine file
 _ROTATIONS = {"x": ((0, 1, 0), -90.0), "y": ((1, 0, 0), 90.0), "z": ((0, 0, 1), 0.0)}  # axis and angle (deg) onto z
 
 
@@ -73,10 +74,10 @@ def _solids(path: Path, options: Mapping[str, Any]) -> dict[str, list[cq.Solid]]
 
     axis, origin = options.get("axis", "z"), options.get("origin_mm", [0.0, 0.0, 0.0])
     where = f"{step_sidecar(path)} [import]"
-    if axis not in _ROTATIONS:
+    if not isinstance(axis, str) or axis not in _ROTATIONS:
         raise InputError(f"{axis!r} is no axis", f"{where} axis", f"one of {', '.join(_ROTATIONS)}")
-    if not (isinstance(origin, list) and len(origin) == 3 and all(isinstance(x, (int, float)) for x in origin)):
-        raise InputError(f"{origin!r} is no point", f"{where} origin_mm", "write [x, y, z]")
+    if not (isinstance(origin, list) and len(origin) == 3 and all(_is_length(x) for x in origin)):
+        raise InputError(f"{origin!r} is no point", f"{where} origin_mm", f"[x, y, z], each within {LARGEST_MM:g} mm")
     rotation = cq.Location(cq.Vector(), cq.Vector(*_ROTATIONS[axis][0]), _ROTATIONS[axis][1])
     translation = cq.Location(cq.Vector(*(-float(x) for x in origin)))
     by_name: dict[str, list[cq.Solid]] = {}
@@ -87,6 +88,10 @@ def _solids(path: Path, options: Mapping[str, Any]) -> dict[str, list[cq.Solid]]
     if not by_name:
         raise InputError("no solids", str(path), RIGHT)
     return by_name
+
+
+def _is_length(x: object) -> bool:
+    return isinstance(x, int | float) and not isinstance(x, bool) and abs(x) <= LARGEST_MM
 
 
 def _assembly(path: Path) -> Any:
@@ -101,11 +106,16 @@ def _assembly(path: Path) -> Any:
 def _without_excluded(
     solids: dict[str, list[cq.Solid]], options: Mapping[str, Any], path: Path
 ) -> dict[str, list[cq.Solid]]:
-    patterns = options.get("leave_out", [])
+    patterns, where = options.get("leave_out", []), f"{step_sidecar(path)} [import] leave_out"
+    if not (isinstance(patterns, list) and all(isinstance(p, str) for p in patterns)):
+        raise InputError(f"{patterns!r} is no list of names", where, 'such as ["bolt*"]')
     for pattern in patterns:
         if not any(fnmatchcase(name, pattern) for name in solids):
-            raise no_solid(pattern, solids, f"{step_sidecar(path)} [import] leave_out")
-    return {name: pieces for name, pieces in solids.items() if not any(fnmatchcase(name, p) for p in patterns)}
+            raise no_solid(pattern, solids, where)
+    rest = {name: pieces for name, pieces in solids.items() if not any(fnmatchcase(name, p) for p in patterns)}
+    if not rest:
+        raise InputError("no solid is left", where, f"fewer of {', '.join(solids)}")
+    return rest
 
 
 def _all_sliced(solids: Mapping[str, list[cq.Solid]], path: Path) -> dict[str, tuple[Prism, ...]]:
@@ -113,9 +123,7 @@ def _all_sliced(solids: Mapping[str, list[cq.Solid]], path: Path) -> dict[str, t
     prisms, faults = {}, []
     for name, pieces in solids.items():
         try:
-            prisms[plain_name(name, f"{path} solid")] = tuple(
-                prism for solid in pieces for prism in sliced(solid, name)
-            )
+            prisms[plain_name(name, "a solid")] = tuple(prism for solid in pieces for prism in sliced(solid, name))
         except InputError as fault:
             faults.append(fault)
     if faults:
@@ -125,7 +133,7 @@ def _all_sliced(solids: Mapping[str, list[cq.Solid]], path: Path) -> dict[str, t
 
 
 def no_solid(pattern: str, names: Mapping[str, Any], where: str) -> InputError:
-    return InputError(f"no solid is called {pattern!r}", where, f"the file has: {', '.join(names)}")
+    return InputError(f"no solid is called {pattern[:60]!r}", where, f"the file has: {', '.join(names)}")
 
 
 def main() -> None:

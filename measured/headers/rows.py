@@ -219,6 +219,7 @@ def _kinds(row: Row, width: int) -> list[bool]:
 def _all_units(row: Row) -> bool:
     """A label may stand before them; units of times alone are those of the steps between rows."""
     cells = [str(c).strip() for c in row if c is not None and str(c).strip()]
+    cells = [c for c in cells if c.lower() not in UNIT_NAMES] or cells  # once, or before the unit of every signal
     steps = len(cells) > 2 and {unit_of(c) for c in cells[1:]} <= {*TIMES}
     units = [c for c in cells if is_unit(c)]
     ratios = all(is_reading(c) for c in units)  # 1 is a unit, but not the only one

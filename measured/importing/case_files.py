@@ -198,9 +198,10 @@ def readings(source: Source, clock: Clock) -> dict[str, NDArray[np.float64]]:
     t = clock.seconds
     keep = np.flatnonzero(np.isfinite(t))
     keep = keep[np.concatenate([[True], np.diff(t[keep]) > 0])]
+    rows = slice(None) if keep.size == t.size else keep  # which needs no memory
     columns = [c for c in source.columns if c not in (TIME, *clock.columns) and source.is_numeric(c)]
-    body = {c: source.numbers(c)[keep] for c in columns}
-    return {TIME: t[keep], **{c: np.where(np.isfinite(v), v, np.nan) for c, v in body.items()}}
+    body = {c: source.numbers(c)[rows] for c in columns}
+    return {TIME: t[rows], **{c: np.where(np.isinf(v), np.nan, v) if np.isinf(v).any() else v for c, v in body.items()}}
 
 
 def imported_table(file: Path, whole: DataTable | None = None) -> DataTable:

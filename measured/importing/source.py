@@ -291,6 +291,7 @@ def _phase(header: str, label: str, letter: str, stems: Mapping[str, int]) -> bo
         or header[len(label) : len(label) + 1] == ":"
         or last.lower() != letter[-1].lower()
         or header[-2:-1].isalpha()
+        or header[-2:-1] in ("°", "º")
     ):
         return False
     quantities = quantities_of(label) or (["temperature"] if roles_of(label) else [])

@@ -7,21 +7,24 @@ import io
 import itertools
 import json
 import re
+from codecs import getincrementaldecoder
 from collections import Counter
-from collections.abc import Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Any
+from typing import Any, cast
 
 from geom.errors import InputError
 from measured.headers.cells import in_thousands, is_date, is_reading, number
 from measured.headers.rows import SAMPLE, Layout, layout, transposed
 from measured.headers.words import CLOCKS, IDEOGRAPHS, VOCABULARY
-from measured.recordings.csv_file import Body, chunks, shared
+from measured.recordings.csv_file import BLOCK, Body, chunks, shared
 from measured.recordings.data_table import PIECE
 
 DELIMITERS = ("\t", ";", ",", "|")
 BLANKS = {" ": r"\s+", "  ": r"\s{2,}|\t"}  # between columns; names may have single blanks in them
 SAMPLE_LINES = 400  # lines from the middle that tell the delimiter
+ODD = 10_000  # bytes of cells with letters beyond ASCII: enough to tell a code page
 BOMS = {b"\xff\xfe": "utf-16", b"\xfe\xff": "utf-16", b"\xef\xbb\xbf": "utf-8-sig"}
 # Code pages of loggers; which one it is, is told by the letters that it gives: those that headers have.
 PAGES = ("cp1252", "cp850", "mac_roman", "cp932", "gb18030", "cp1250", "cp1251", "cp949", "cp1254")
@@ -51,45 +54,74 @@ BOTH_SIGNS = re.compile(r"(?<![\d.:/-])\d+\.\d+(?![\d.:/-])")  # a number with a
 Columns = list[Any]
 
 
+@dataclass(frozen=True)
+class Lines:
+    """The lines of a text file with their ends, read anew whenever they are gone through: a large file never stands in
+    memory as text.  edit : what stands for a line; "" where nothing does"""
+
+    file: Path
+    encoding: str
+    edit: Callable[[str], str] = str
+
+    def __iter__(self) -> Iterator[str]:
+        decode, rest = getincrementaldecoder(self.encoding)("replace").decode, list[str]()
+        for part in itertools.chain(chunks(self.file, BLOCK), [b""]):
+            rest.append(decode(part, not part))
+            if part and "\n" not in rest[-1]:
+                continue
+            lines = "".join(rest).splitlines(keepends=True)
+            rest = [lines.pop()] if part else []  # it may go on, if only by the second sign of its end
+            yield from filter(None, map(self.edit, lines))
+
+    def edited(self, edit: Callable[[str], str]) -> Lines:
+        before = self.edit
+        return replace(self, edit=lambda line: edit(before(line)))
+
+
 def text_table(file: Path) -> tuple[Layout, Columns, list[str], float | None]:
     """Where the table stands in a text file, its columns (numbers, or cells where there are words), and doubts.
 
     The last is the time between rows (s) where the lines before the header say it.
     """
-    text, notes = decoded(b"".join(chunks(file)), file), list[str]()
-    if FORTRAN.search(text[:10_000]):
-        text = FORTRAN.sub("E", text)
-    if ARROW.search(text[:10_000]):
-        text = ARROW.sub(lambda match: f"{match[1]}\t", text)
-    if len(LOGGED.findall(text[:10_000])) > 9:
-        text = "".join("\t".join([time, *re.findall(PAIR, pairs)]) + "\n" for time, pairs in LOGGED.findall(text))
-    if text.lstrip()[:1] in ("{", "[") and (table := _objects(text)):
+    lines, notes = Lines(file, encoding_of(lambda: chunks(file, BLOCK), file)), list[str]()
+    start = "".join(itertools.islice(lines, SAMPLE_LINES))[:10_000]
+    if FORTRAN.search(start):
+        lines = lines.edited(lambda line: FORTRAN.sub("E", line))
+    if ARROW.search(start):
+        lines = lines.edited(lambda line: ARROW.sub(lambda match: f"{match[1]}\t", line))
+    if len(LOGGED.findall(start)) > 9:
+        lines = lines.edited(_logged)
+    first = next((line for line in lines if line.strip()), "")
+    if first.lstrip()[:1] in ("{", "[") and (table := _objects("".join(lines))):
         return *table, notes, None
-    lines = text.splitlines(keepends=True)
-    del text  # of a large file a hundred megabytes
-    if sum(line.count('"') for line in lines) % 2:
-        at = next(i for i, line in enumerate(lines, 1) if line.count('"') % 2)
-        notes.append(f"{file.name}: a quotation mark in line {at} has no partner; such marks are left out")
-        lines = [line.replace('"', "") for line in lines]
-    sign = delimiter(lines)
-    head = split_cells(lines[: 2 * SAMPLE], sign)
-    if transposed(head):
-        head = [*map(list, zip(*(row for row in head if len(row) > 1), strict=False))]
-        lines, sign = ["\t".join(row) + "\n" for row in head], "\t"
-    if keys := _keys(head):
-        every = [_by_key(row) for row in split_cells(lines, sign) if any(row)]
+    count, odd = 0, list[int]()
+    for count, line in enumerate(lines, 1):
+        if line.count('"') % 2:
+            odd.append(count)
+    if len(odd) % 2:
+        notes.append(f"{file.name}: a quotation mark in line {odd[0]} has no partner; such marks are left out")
+        lines = lines.edited(lambda line: line.replace('"', ""))
+    middle = max(0, count // 2 - SAMPLE_LINES // 2)
+    sign = delimiter([*itertools.islice(lines, middle, middle + SAMPLE_LINES)])
+    head = [*itertools.islice(lines, 2 * SAMPLE)]
+    cells, rows = split_cells(head, sign), cast("Iterable[str]", lines)
+    if transposed(cells):
+        cells = [*map(list, zip(*(row for row in cells if len(row) > 1), strict=False))]
+        rows, sign = ["\t".join(row) + "\n" for row in cells], "\t"
+    if keys := _keys(cells):
+        every = [_by_key(row) for row in split_cells([*rows], sign) if any(row)]
         readings = [[row.get(key) for key in keys] for row in every if 2 * len(row.keys() & {*keys}) > len(keys)]
-        odd = f"{file.name}: {len(every) - len(readings)} lines without the names of the others are left out"
-        notes += [odd] * (len(readings) < len(every))
+        unlike = f"{file.name}: {len(every) - len(readings)} lines without the names of the others are left out"
+        notes += [unlike] * (len(readings) < len(every))
         return Layout(tuple(keys), ("",) * len(keys), 0, len(keys)), _raw(readings, len(keys)), notes, None
-    plan = layout(head, str(file))
+    plan = layout(cells, str(file))
     if sign == "  " and not any(plan.names):  # names with one blank between them over columns with several
-        single = layout(split_cells(lines[: 2 * SAMPLE], " "), str(file))
+        single = layout(split_cells(head, " "), str(file))
         plan, sign = (single, " ") if single.width == plan.width and any(single.names) else (plan, sign)
-    interval_s = _interval("".join(lines[: plan.first]))
-    columns = _plain(file, lines, sign, plan)
+    interval_s = _interval("".join(itertools.islice(rows, plan.first)))
+    columns = _plain(file, rows, sign, plan)
     if columns is None:
-        columns, long = _with_words(lines, sign, plan)
+        columns, long = _with_words(rows, sign, plan)
         notes += [f"{file.name}: {long} rows have more cells than the others; those cells are left out"] * bool(long)
         whole = in_thousands(columns)
         notes += [
@@ -98,6 +130,11 @@ def text_table(file: Path) -> tuple[Layout, Columns, list[str], float | None]:
         ]
         columns = [whole.get(j, cells) for j, cells in enumerate(columns)]
     return plan, columns, notes, interval_s
+
+
+def _logged(line: str) -> str:
+    """The cells of a line that a program logged."""
+    return "".join("\t".join([time, *re.findall(PAIR, pairs)]) + "\n" for time, pairs in LOGGED.findall(line))
 
 
 def _objects(text: str) -> tuple[Layout, Columns] | None:
@@ -184,36 +221,53 @@ def _interval(preamble: str) -> float | None:
     return step if step > 0 else None
 
 
-def _plain(file: Path, lines: list[str], sign: str, plan: Layout) -> Columns | None:
+def _plain(file: Path, lines: Iterable[str], sign: str, plan: Layout) -> Columns | None:
     """By the reader of plain CSV, which a table is once signs are replaced; None where it is not that simple."""
-    again = sign.join(plan.names)  # a header and remarks may come again
-    body = [line for line in lines[plan.first :] if not line.startswith("#") and line.strip() != again]
-    commas = sign != "," and any("," in line for line in body)
-    if sign in BLANKS or any('"' in line for line in body) or (commas and any(map(BOTH_SIGNS.search, body))):
+    if sign in BLANKS:
         return None
-    texts = ("".join(body[i : i + PIECE]) for i in range(0, len(body), PIECE))
-    if sign != ",":
-        texts = (text.replace(",", ".").replace(sign, ",") for text in texts)
     try:
-        return Body(file, plan.width).columns(text.encode() for text in texts)
+        return Body(file, plan.width).columns(text.encode() for text in _with_commas(lines, sign, plan))
     except csv.Error:
         return None
 
 
-def _with_words(lines: list[str], sign: str, plan: Layout) -> tuple[Columns, int]:
-    """Columns of cells, and how many rows have more than the header.  lines : are used up, so many at once as end
-    outside quotation marks: the words of all rows together take ten times their memory"""
+def _with_commas(lines: Iterable[str], sign: str, plan: Layout) -> Iterator[str]:
+    """Rows of readings with commas between them and points in them, many at once.
+
+    csv.Error where there are quotation marks, or commas in some numbers and points in others.
+    """
+    again, commas, points = sign.join(plan.names), False, False  # a header and remarks may come again
+    rows = (line for line in itertools.islice(lines, plan.first, None) if line[0] != "#" and line.strip() != again)
+    while text := "".join(itertools.islice(rows, PIECE)):
+        if sign != ",":
+            commas, points = commas or "," in text, points or bool(BOTH_SIGNS.search(text))
+        if '"' in text or (commas and points):
+            raise csv.Error("no plain numbers")
+        yield text if sign == "," else text.replace(",", ".").replace(sign, ",")
+
+
+def _with_words(lines: Iterable[str], sign: str, plan: Layout) -> tuple[Columns, int]:
+    """Columns of cells, and how many rows have more than the header."""
     columns, long, first = [list[Any]() for _ in range(plan.width)], 0, plan.first
-    while lines:
-        marks = itertools.accumulate(line.count('"') for line in lines)
-        end = next((i for i, count in enumerate(marks, 1) if i >= PIECE and count % 2 == 0), len(lines))
-        rows, first = split_cells(lines[:end], sign)[first:], 0
-        del lines[:end]
+    for some in _whole_rows(lines):
+        rows, first = split_cells(some, sign)[first:], 0
         body = [r for r in rows if any(r) and r[: plan.width] != [*plan.names] and not "".join(r[:1]).startswith("#")]
         long += sum(any(c.strip() for c in row[plan.width :]) for row in body)
         for column, cells in zip(columns, _raw(body, plan.width), strict=True):
             column += shared(cells)
     return columns, long
+
+
+def _whole_rows(lines: Iterable[str]) -> Iterator[list[str]]:
+    """Lines, so many at once as end outside quotation marks: the words of all take ten times their memory."""
+    some, marks = list[str](), 0
+    for line in lines:
+        some.append(line)
+        marks += line.count('"')
+        if len(some) >= PIECE and marks % 2 == 0:
+            yield some
+            some = []
+    yield some
 
 
 def _raw(rows: Sequence[Sequence[str | None]], width: int) -> Columns:
@@ -243,30 +297,57 @@ def _keys(rows: list[list[str]]) -> list[str]:
 
 
 def decoded(raw: bytes, file: Path) -> str:
-    """UTF-8, UTF-16 with its mark or without, or the code page whose letters are those of headers."""
+    return raw.decode(encoding_of(lambda: [raw], file), "replace")
+
+
+def encoding_of(parts: Callable[[], Iterable[bytes]], file: Path) -> str:
+    """UTF-8, UTF-16 with its mark or without, or the code page whose letters are those of headers.
+
+    parts : gives the bytes of the text, piece by piece, whenever it is asked
+    """
+    decode, utf8 = getincrementaldecoder("utf-8")().decode, True
+    for i, part in enumerate(itertools.chain(parts(), [b""])):
+        if i == 0 and (encoding := _wide(part)):
+            return encoding
+        if b"\0" in part:
+            raise InputError(
+                "holds zero bytes, so it is no text: it is no record",
+                str(file),
+                "CSV or other text, .xlsx, .tdms, .mf4, .parquet or .mat",
+            )
+        try:
+            decode(part, not part) if utf8 else None
+        except UnicodeDecodeError:
+            utf8 = False
+    if utf8:
+        return "utf-8"
+    lines = (line for part in parts() for line in part.splitlines() if not line.isascii())
+    cells = (cell for line in lines for cell in re.split(rb"[,;\t]", line) if not cell.isascii())
+    odd = dict[bytes, None]()  # each cell counts once, however often a column has it
+    while len(b"\n".join(odd)) < ODD and (some := [*itertools.islice(cells, ODD)]):
+        odd |= dict.fromkeys(some)
+    return _page(b"\n".join(odd)[:ODD])
+
+
+def _wide(start: bytes) -> str:
+    """The encoding that the first bytes of a text show by a mark or by their zeros, else nothing."""
     for bom, encoding in BOMS.items():
-        if raw.startswith(bom):
-            return raw.decode(encoding, errors="replace")
-    for encoding, zeros in (("utf-16-le", raw[1:200:2]), ("utf-16-be", raw[:200:2])):
+        if start.startswith(bom):
+            return encoding
+    for encoding, zeros in (("utf-16-le", start[1:200:2]), ("utf-16-be", start[:200:2])):
         if len(zeros) > 4 and zeros.count(0) > 0.9 * len(zeros):
-            return raw.decode(encoding, errors="replace")
-    if b"\0" in raw:
-        raise InputError(
-            "holds zero bytes, so it is no text: it is no record",
-            str(file),
-            "CSV or other text, .xlsx, .tdms, .mf4, .parquet or .mat",
-        )
-    try:
-        return raw.decode("utf-8")
-    except UnicodeDecodeError:
-        # Each cell counts once, however often a column has it.
-        odd = b"\n".join(dict.fromkeys(c for c in re.split(rb"[,;\t\r\n]", raw) if not c.isascii()))[:10_000]
-        letters = {page: odd.decode(page, "ignore") for page in PAGES}  # of headers, and degrees above all
-        worth = {p: len(LETTERS.findall(t)) + DEGREE * len(re.findall("[°º][CFK]|℃", t)) for p, t in letters.items()}
-        worth["cp1251"] += sum(map(len, RUSSIAN.findall(letters["cp1251"])))
-        for page, words in letters.items():
-            worth[page] += DEGREE * sum(map(len, WORDS.findall(words)))
-        return raw.decode(max(PAGES, key=lambda page: worth[page]), "replace")
+            return encoding
+    return ""
+
+
+def _page(odd: bytes) -> str:
+    """The code page that makes the most of cells with letters beyond ASCII."""
+    letters = {page: odd.decode(page, "ignore") for page in PAGES}  # of headers, and degrees above all
+    worth = {p: len(LETTERS.findall(t)) + DEGREE * len(re.findall("[°º][CFK]|℃", t)) for p, t in letters.items()}
+    worth["cp1251"] += sum(map(len, RUSSIAN.findall(letters["cp1251"])))
+    for page, words in letters.items():
+        worth[page] += DEGREE * sum(map(len, WORDS.findall(words)))
+    return max(PAGES, key=lambda page: worth[page])
 
 
 def delimiter(lines: list[str]) -> str:
@@ -274,8 +355,7 @@ def delimiter(lines: list[str]) -> str:
 
     Blanks stand within instants too, so they are it only where no other sign leaves readings nearly everywhere.
     """
-    middle = max(0, len(lines) // 2 - SAMPLE_LINES // 2)
-    sample = [line for line in lines[middle : middle + SAMPLE_LINES] if line.strip()]
+    sample = [line for line in lines if line.strip()]
     scores, shares = {}, {}
     for sign in (*DELIMITERS, *reversed(BLANKS)):
         cells = [cell for row in split_cells(sample, sign) if len(row) > 1 for cell in row]

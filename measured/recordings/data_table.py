@@ -186,11 +186,14 @@ def rows_of(columns: Mapping[str, Sequence[Any] | Column]) -> list[list[Any]]:
     return [list(columns), *(list(row) for row in zip(*plain, strict=True))]
 
 
-def csv_text(columns: Mapping[str, Sequence[Any] | Column]) -> str:
-    """Columns as CSV: shortest numbers that read back the same, empty cells where there is none."""
-    text, rows = io.StringIO(), max(map(len, columns.values()), default=0)
-    writer = csv.writer(text, lineterminator="\n")
-    writer.writerow(columns)
-    for i in range(0, rows, PIECE):
-        writer.writerows(rows_of({name: values[i : i + PIECE] for name, values in columns.items()})[1:])
+def csv_text(columns: Mapping[str, Sequence[Any] | Column]) -> Iterator[str]:
+    """Columns as CSV, many rows at once: shortest numbers that read back the same, empty cells where there is none."""
+    yield _csv([list(columns)])
+    for i in range(0, max(map(len, columns.values()), default=0), PIECE):
+        yield _csv(rows_of({name: values[i : i + PIECE] for name, values in columns.items()})[1:])
+
+
+def _csv(rows: Iterable[Iterable[Any]]) -> str:
+    text = io.StringIO()
+    csv.writer(text, lineterminator="\n").writerows(rows)
     return text.getvalue()

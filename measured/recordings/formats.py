@@ -125,8 +125,8 @@ def read_recording(file: Path, worksheet: str = "", least: int = 3) -> DataTable
 def read_csv(file: Path) -> DataTable:
     """The table of a CSV file under its own header."""
     plan, line, parts = csv_pieces(file, first_row_layout)
-    columns = [*parts]
-    pairs = ((name, joined_parts([part[j] for part in columns])) for j, name in enumerate(plan.names))
+    rest = [[*part] for part in parts]
+    pairs = ((name, joined_parts([part.pop(0) for part in rest])) for name in plan.names)
     return DataTable.of(pairs, file, line=line, units=plan.units_by_name)
 
 

@@ -132,6 +132,15 @@ def test_a_cell_far_away_takes_no_memory(tmp_path, cell, word):
     assert memory_MB < MEMORY_MB
 
 
+@pytest.mark.nightly
+def test_a_text_is_never_in_memory_whole(tmp_path):
+    """A million short lines, of which each alone takes 60 bytes: 16 MB of numbers, and the packages."""
+    (tmp_path / "a.txt").write_text("t (s);T \u03a9 (\xb0C)\n" + "".join(f"{k};20,5\n" for k in range(10**6)))
+    said, memory_MB = measured_MB(tmp_path / "a.txt")
+    assert said == "1000000"
+    assert memory_MB < 130
+
+
 def test_long_words_are_not_read_letter_by_letter(tmp_path):
     """A thousand cells of one long text, in a file of some kB: its letters are looked at a few times in all."""
     pyarrow = pytest.importorskip("pyarrow")

@@ -176,13 +176,15 @@ class ProgressBar:
     def _pace(self, took: Mapping[str, float]) -> float:
         """What is still to come over what it took the last time, by the stages so far and what each took (s).
 
-        Of this very case it is what they took over what they took then. Of another, fits say that of fits, and the
-        error of the time steps, for which the model is run, that of small cases and large ones; other stages say only
-        as much as they were of its work: a long file is read forty times as long, and the yardstick after it takes
-        twice as long. What others take of the computer slows all stages alike.
+        Of this very case it is what they took over what they took then; but what was prepared then may have been kept,
+        so that a second run prepares in a third of the time and fits as long as before. Of another, fits say that of
+        fits, and the error of the time steps, for which the model is run, that of small cases and large ones; other
+        stages say only as much as they were of its work: a long file is read forty times as long, and the yardstick
+        after it takes twice as long. What others take of the computer slows all stages alike.
         """
         if self.same_case:
-            return self._quotient(took, 1.0, 1.0)
+            usual = sum(min(self.last[s], t) if _word(s) in PREPARING else self.last[s] for s, t in took.items())
+            return sum(took.values()) / usual if usual > PACED_S else 1.0
         fits = [s for s in took if _word(s) not in PREPARING]
         runs = [s for s in took if _word(s) == "estimating"]
         share = min(sum(self.last[s] for s in took) / max(sum(self.last.values()), PACED_S), 1.0)

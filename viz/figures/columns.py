@@ -36,9 +36,8 @@ def columns(panels: Sequence[Panel], title: str, *, png: str | Path | None = Non
     visible_panels = panels[:MOST]
     figure, axes = paper.panels(len(visible_panels), ACROSS, (3.0, 1.8), title, more=0.5)
     for ax, panel in zip(axes, visible_panels, strict=False):
-        thin = slice(None, None, max(1, panel.time.size // POINTS))
         colour = LIGHT.faint if not panel.meaning else BLUE if panel.is_temperature else ORANGE
-        ax.plot(panel.time[thin], panel.values[thin], color=colour, lw=1.0)
+        ax.plot(panel.time, panel.values, color=colour, lw=1.0)
         ax.set_title(panel.name[:SHORT], fontsize=8.5)
         ax.set_xlabel(f"{panel.meaning or 'left out'} over time (s)", fontsize=8)
         ax.margins(x=0)

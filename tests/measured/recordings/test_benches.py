@@ -75,6 +75,25 @@ def test_a_row_of_units_stands_over_that_of_the_clock():
     assert plan.units[3:] == ("°C", "°C", "kW")
 
 
+def test_a_label_before_the_unit_of_every_signal():
+    """As a scope of control systems writes a clock beside each signal."""
+    rows = [
+        ["Name", "GVL.fWicklung", "Name", "GVL.fStrom"],
+        ["Einheit", "°C", "Einheit", "A"],
+        *([f"{k}", "20", f"{k}", "5"] for k in range(9)),
+    ]
+    plan = layout(rows, "a.csv")
+    assert (plan.names[1], plan.names[3]) == ("GVL.fWicklung", "GVL.fStrom")
+    assert (plan.units[1], plan.units[3]) == ("°C", "A")
+
+
+def test_a_sign_of_degrees_makes_the_letter_behind_it_a_unit(tmp_path):
+    """Whatever quantity the channel's own number looks like: M01 is no torque."""
+    names = ["M01.0 Wicklung °C", "M02.0 Gehäuse °C"]
+    source = read_source(read(tmp_path, **dict.fromkeys(names, 20 + T)))
+    assert [source.units[name] for name in names] == ["degC", "degC"]
+
+
 def test_channels_are_called_by_what_differs_between_them():
     settings = [[f"CH{k}", name, "TEMP", "TC_K"] for k, name in enumerate(["Coil", "Frame", "Bearing", "Room"], 1)]
     head = ["Number", *(f"CH{k}" for k in range(1, 5))]

@@ -669,7 +669,9 @@ def test_rows_of_a_clock_that_was_set_back_are_not_shuffled_into_each_other(tmp_
         read_runs(tmp_path / "a.csv", None)
 
 
-@pytest.mark.parametrize("stamp", ["%Y. %m. %d. %H:%M:%S", "%Y.%m.%d. %H:%M:%S", "%Y.%m.%d %H:%M:%S"])
+@pytest.mark.parametrize(
+    "stamp", ["%Y. %m. %d. %H:%M:%S", "%Y.%m.%d. %H:%M:%S", "%Y.%m.%d %H:%M:%S", "%d.%m.%Y. %H:%M:%S"]
+)
 def test_points_and_blanks_in_dates(tmp_path, stamp):
     cells = [datetime.fromtimestamp(1762157670 + 5 * k, UTC).strftime(stamp) for k in range(9)]
     (tmp_path / "a.csv").write_text("time,T_coil [C]\n" + "".join(f"{c},{20 + k}\n" for k, c in enumerate(cells)))

@@ -74,6 +74,14 @@ def test_time_left_follows_the_pace_of_this_run():
     assert stages.left() == (pytest.approx(0.5), pytest.approx(10.0))
 
 
+def test_what_was_kept_the_last_time_makes_no_fit_faster():
+    """A second run prepares in a quarter of the time; what is looked for takes as long as before."""
+    clock = Clock()
+    stages = ProgressBar({"preparing": 80.0, "trying": 20.0, "looking": 60.0}, clock)
+    worked(stages, clock, [("preparing", 20.0), ("trying", 20.0), ("looking", 0.0)])
+    assert stages.left()[1] == pytest.approx(60.0)
+
+
 @pytest.mark.parametrize(("reads", "rest"), [(40.0, 20.0), (1.0, 10.0), (3.0, 30.0)])
 def test_stages_of_another_case_tell_little_by_one_of_them(reads, rest):
     """A file of a million rows is read forty times as long; what comes after takes twice as long, not forty times."""

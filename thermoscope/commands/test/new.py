@@ -119,6 +119,7 @@ def new_case(files: Sequence[Path], wishes: Wishes, target: str | None) -> int:
             read += read_runs(file, wishes.period_s)
         model = _model(wishes, read, tell)
     drafts = _drafts(read, model, wishes)
+    read.clear()
     with progress() as tell:
         document = save_case(folder, model, drafts, tell)
     give(document, target, lambda: new_case_summary(document))
@@ -250,8 +251,11 @@ def drafts_of(
     return out
 
 
-def save_case(folder: Path, model: Model, drafts: Sequence[Draft], tell: Progress) -> dict[str, Any]:
-    """Write the case, read it as compare would, draw its columns; the document of the command."""
+def save_case(folder: Path, model: Model, drafts: list[Draft], tell: Progress) -> dict[str, Any]:
+    """Write the case, draw its columns, read it as compare would; the document of the command.
+
+    drafts : is empty afterwards: a large recording need not be there twice
+    """
     from measured.case import Case
     from measured.case import Model as CaseModel
     from measured.recordings.readings import read_test
@@ -267,7 +271,11 @@ def save_case(folder: Path, model: Model, drafts: Sequence[Draft], tell: Progres
         doubts = sentences(short_lines(drafts, bool(model.first)))
         write_case(partial, folder.name, model.put, drafts, " ".join(doubts), model.first is not None)
         settings = read_settings(partial)
-        with _as_recorded(partial, drafts):
+        tell("drawing the columns")
+        _draw(drafts[0], partial / "out" / PICTURE)
+        documents = [_document(d, e.role) for d, e in zip(drafts, settings.tests, strict=True)]
+        drafts.clear()
+        with _as_recorded(partial, documents):
             patients = [patient_of(entry) for entry in settings.tests]
             tests = [
                 read_test(entry.name, entry.role, one.samples, one.sheet, model.network, settings.sample_s).test
@@ -280,8 +288,6 @@ def save_case(folder: Path, model: Model, drafts: Sequence[Draft], tell: Progres
             first = learn_network(Case(folder.name, CaseModel(network), tuple(tests)), model.first)
             model = replace(model, first=first)
             write_whole(partial / "network.toml", first.text())
-        tell("drawing the columns")
-        _draw(drafts[0], partial / "out" / PICTURE)
     return {
         "case": folder.name,
         "folder": str(folder),
@@ -290,7 +296,7 @@ def save_case(folder: Path, model: Model, drafts: Sequence[Draft], tell: Progres
         "warnings": warnings,
         "sample_s": settings.sample_s,
         "findings": [f.document() for f in findings],
-        "tests": [_document(d, e.role) for d, e in zip(drafts, settings.tests, strict=True)],
+        "tests": documents,
     }
 
 
@@ -305,15 +311,15 @@ def _draw(draft: Draft, png: Path) -> None:
 
 
 @contextmanager
-def _as_recorded(folder: Path, drafts: Sequence[Draft]) -> Iterator[None]:
+def _as_recorded(folder: Path, tests: Sequence[Mapping[str, Any]]) -> Iterator[None]:
     """What is wrong with a test that was to be written is said of the recording it comes from."""
     try:
         yield
     except InputError as fault:
         where = fault.where
-        for draft in drafts:
-            files = ", ".join(str(r.source.file) for r in draft.records)
-            for name in (f"{draft.name}.csv", f"{draft.name}.toml"):
+        for test in tests:
+            files = ", ".join(file["file"] for file in test["files"])
+            for name in (f"{test['name']}.csv", f"{test['name']}.toml"):
                 where = where.replace(str(folder / "tests" / name), files)
         right = f"{fault.right}; or a part of it by --from and --to, other values by --set; nothing was written"
         raise InputError(fault.what, where.replace(str(folder), "the new case"), right) from None
@@ -346,15 +352,16 @@ def _document(draft: Draft, role: str) -> dict[str, Any]:
 
 def panels(draft: Draft) -> list[Panel]:
     """The columns of numbers of a test as the picture wants them."""
-    from viz.figures.columns import Panel
+    from viz.figures.columns import POINTS, Panel
 
-    return [
-        Panel(g.column, r.clock.seconds + r.shift_s, np.where(coded(values), np.nan, values), meaning(g), bool(g.place))
-        for r in draft.records
-        for g in r.guesses
-        if r.source.is_numeric(g.column)
-        for values in [r.source.numbers(g.column)]
-    ]
+    out = []
+    for r in draft.records:
+        rows = np.arange(0, r.source.rows, max(1, r.source.rows // POINTS))
+        time = r.clock.seconds[rows] + r.shift_s
+        for g in (g for g in r.guesses if r.source.is_numeric(g.column)):
+            values = np.where(coded(values := r.source.numbers(g.column)), np.nan, values)[rows]
+            out.append(Panel(g.column, time, values, meaning(g), bool(g.place)))
+    return out
 
 
 def meaning(g: Guess) -> str:
