@@ -24,6 +24,7 @@ from geom.families.family import Family
 from geom.families.proportions import remedy
 from geom.importing.assumptions import USUAL_TEMPLATE
 from geom.importing.draft import Draft
+from geom.importing.dxf import read_section
 from geom.importing.motor_cad import read_motor_cad
 from geom.importing.pyleecan import read_pyleecan
 from geom.plugins import plugins
@@ -35,10 +36,18 @@ LIBRARY = Path(__file__).parent / "machines"
 _HEADER = ("name", "family", "description", "source", "assumed", "like", "without")
 
 IMPORTERS = {".json": read_pyleecan, ".mot": read_motor_cad}
+DRAWING = ".dxf"
 
 
-def import_draft(path: Path, family_template: str = USUAL_TEMPLATE) -> Draft:
-    """The machine file in the making. Raises InputError for files of other kinds, and for what is wrong in them."""
+def import_draft(
+    path: Path, family_template: str = USUAL_TEMPLATE, stack_mm: float | None = None, units: str = ""
+) -> Draft:
+    """The machine file in the making. Raises InputError for files of other kinds, and for what is wrong in them.
+
+    stack_mm, units : what a drawing may not know: the stack's length, and the unit of its coordinates
+    """
+    if path.suffix.lower() == DRAWING:
+        return read_section(path, family_template, stack_mm, units)
     reader = IMPORTERS.get(path.suffix.lower())
     if reader is None:
         raise InputError(
