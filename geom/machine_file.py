@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import tomllib
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from functools import cache
 from pathlib import Path
@@ -35,8 +35,8 @@ LARGEST_MM = 1e6  # as all lengths of a machine file
 LIBRARY = Path(__file__).parent / "machines"
 _HEADER = ("name", "family", "description", "source", "assumed", "like", "without")
 
-IMPORTERS = {".json": read_pyleecan, ".mot": read_motor_cad}
 DRAWING = ".dxf"
+IMPORTERS: dict[str, Callable[..., Draft]] = {".json": read_pyleecan, ".mot": read_motor_cad, DRAWING: read_section}
 
 
 def import_draft(
@@ -44,18 +44,17 @@ def import_draft(
 ) -> Draft:
     """The machine file in the making. Raises InputError for files of other kinds, and for what is wrong in them.
 
-    stack_mm, units : what a drawing may not know: the stack's length, and the unit of its coordinates
+    stack_mm, units : what a drawing may not know: length of the stack, unit of its coordinates
     """
-    if path.suffix.lower() == DRAWING:
+    suffix = path.suffix.lower()
+    if suffix not in IMPORTERS:
+        right = f"one of: {', '.join(IMPORTERS)}"
+        raise InputError(f"{path.suffix or 'no ending'} is no machine file of another program", str(path), right)
+    if suffix == DRAWING:
         return read_section(path, family_template, stack_mm, units)
-    reader = IMPORTERS.get(path.suffix.lower())
-    if reader is None:
-        raise InputError(
-            f"{path.suffix or 'no ending'} is no machine file of another program",
-            str(path),
-            f"one of: {', '.join(IMPORTERS)}",
-        )
-    return reader(path, family_template)
+    if stack_mm is not None or units:
+        raise InputError("--stack-mm and --units are for drawings", str(path), "without them: the file knows both")
+    return IMPORTERS[suffix](path, family_template)
 
 
 def library() -> dict[str, Path]:

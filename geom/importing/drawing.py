@@ -97,7 +97,7 @@ def _edges(entities: Iterable[Any], drawing: Drawing, outer: str = "0") -> Itera
         elif kind == "CIRCLE":
             a, b = (_point(p, drawing) for p in entity.vertices((0, 180)))
             yield from ((layer, (a, b, 1.0)), (layer, (b, a, 1.0)))
-        else:
+        elif kind not in ("TEXT", "MTEXT"):
             drawing.others[kind] += 1
 
 
@@ -178,47 +178,68 @@ def whole_turn(drawn: Iterable[Edge], copies: int, start: float, cut: bool) -> l
     return [turned(edge, k * pitch) for k in range(copies) for edge in kept]
 
 
-def loops_through(drawn: Sequence[Edge], where: str, paths: bool = False) -> tuple[list[Loop], list[Loop]]:
-    """Closed loops, anticlockwise, and paths that stay open, once each.
+def loops_and_paths(
+    drawn: Sequence[Edge], where: str, paths: bool = False, seams: bool = False
+) -> tuple[list[Loop], list[Loop]]:
+    """What the edges enclose as loops, anticlockwise, each without others inside it; and paths that stay open.
 
-    paths : whether these may be.  Raises InputError with the point where an outline is open or branches.
+    paths : whether these may be;  seams : whether a radius between two other edges divides what is one
+    Raises InputError with the point where an outline is open.
     """
-    every, ends = _welded(drawn), defaultdict(list)
-    for k, edge in enumerate(every):
-        for z in edge[:2]:
-            ends[z].append(k)
-    for z, near in ends.items():
-        if len(near) > 2 or (len(near) < 2 and not paths):
-            what = "branches" if len(near) > 2 else "is open"
-            right = f"two ends at every point, within {1e3 * WELD:g} mm of each other"
-            raise InputError(f"an outline {what} at x = {1e3 * z.real:.6g}, y = {1e3 * z.imag:.6g} mm", where, right)
-    closed: list[Loop] = []
+    every = _welded(drawn)
+    if seams:
+        ends = Counter(z for edge in every for z in edge[:2])
+        every = [edge for edge in every if not (_is_radial(edge) and min(ends[z] for z in edge[:2]) > 2)]
+    ways = {(a, b, bulge) for edge in every for a, b, bulge in (edge, reverse(edge))}
+    leaving: dict[complex, list[Edge]] = defaultdict(list)
+    for way in ways:
+        leaving[way[0]].append(way)
+    for around in leaving.values():
+        around.sort(key=_direction)
     unclosed: list[Loop] = []
-    left = set(range(len(every)))
-    for first in [*(near[0] for near in ends.values() if len(near) == 1), *range(len(every))]:
-        if first not in left:
+    loose = [z for z, around in leaving.items() if len(around) == 1]
+    for z in sorted(loose, key=lambda z: (abs(cmath.phase(z)), abs(z))):
+        if not paths:
+            right = f"two ends at every point, within {1e3 * WELD:g} mm of each other"
+            raise InputError(f"an outline is open at x = {1e3 * z.real:.6g}, y = {1e3 * z.imag:.6g} mm", where, right)
+        chain = [leaving[z][0]] if leaving[z][0] in ways else []
+        while chain and len(rest := [w for w in leaving[chain[-1][1]] if w != reverse(chain[-1])]) == 1:
+            chain.append(rest[0])
+        if chain:
+            ways -= {way for edge in chain for way in (edge, reverse(edge))}
+            unclosed.append((*((a.real, a.imag, bulge) for a, _, bulge in chain), _vertex(chain[-1][1])))
+    closed = []
+    left = [way for edge in every for way in (edge, reverse(edge)) if way in ways]
+    for first in left:  # around what lies on the left of a way: at every point the next one to the right
+        if first not in ways:
             continue
-        a, b, _ = every[first]
-        at = b if len(ends[b]) == 1 else a
-        begin, chain, k = at, [], first
-        while k in left:
-            left.discard(k)
-            a, b, bulge = every[k]
-            a, b, bulge = (a, b, bulge) if a == at else (b, a, -bulge)
-            chain.append((a.real, a.imag, bulge))
-            at = b
-            k = next((other for other in ends[b] if other in left), -1)
-        if at == begin:
-            closed.append(anticlockwise(tuple(chain)))
-        else:
-            unclosed.append((*chain, _vertex(at)))
+        chain = [first]
+        while True:
+            around = leaving[chain[-1][1]]
+            following = around[around.index(reverse(chain[-1])) - 1]
+            if following == chain[0]:
+                break
+            chain.append(following)
+        ways -= set(chain)
+        closed.append(tuple((a.real, a.imag, bulge) for a, _, bulge in chain))
     return [loop for loop in closed if loop_area(loop) > WELD**2], unclosed
 
 
-def anticlockwise(loop: Loop) -> Loop:
-    if loop_area(loop) >= 0:
-        return loop
-    return tuple((*p[:2], -q[2]) for p, q in zip(reversed(loop), [*reversed(loop[:-1]), loop[-1]]))
+def reverse(edge: Edge) -> Edge:
+    return edge[1], edge[0], -edge[2]
+
+
+def _direction(edge: Edge) -> tuple[float, float]:
+    """Angle (rad) at which it leaves; of two that leave together the one that turns left is further round."""
+    a, b, bulge = edge
+    angle = (cmath.phase(b - a) - 2 * math.atan(bulge)) % (2 * math.pi)
+    return round(angle, 6) % round(2 * math.pi, 6), bulge / abs(b - a)
+
+
+def _is_radial(edge: Edge) -> bool:
+    """Along a radius?"""
+    a, b, bulge = edge
+    return not bulge and abs((a.conjugate() * b).imag) < WELD * abs(b - a)
 
 
 def edges_of(loop: Loop) -> list[Edge]:

@@ -23,7 +23,7 @@ from geom.importing.drawing import (
     along,
     axis_of,
     edges_of,
-    loops_through,
+    loops_and_paths,
     middle,
     piece,
     read_drawing,
@@ -86,14 +86,15 @@ class Section:
 
     def iron(self, kind: str) -> list[Loop]:
         """Outlines of the whole turn: what a sector's sides cut is one again."""
-        return loops_through(whole_turn(self.edges[kind], *self.sector(kind), cut=True), self.where(kind))[0]
+        around = whole_turn(self.edges[kind], *self.sector(kind), cut=True)
+        return loops_and_paths(around, self.where(kind), seams=True)[0]
 
     def slots(self) -> list[Loop]:
         """Loops, and paths that the bore closes, of the whole turn."""
         if "slot" not in self.edges:
             return []
         around = whole_turn(self.edges["slot"], *self.sector("stator"), cut=True)
-        closed, unclosed = loops_through(around, self.where("slot"), paths=True)
+        closed, unclosed = loops_and_paths(around, self.where("slot"), paths=True)
         return closed + unclosed
 
     def shapes(self, kind: str, iron: str) -> list[Loop]:
@@ -102,11 +103,17 @@ class Section:
             return []
         copies, start = self.sector(iron)
         try:
-            loops, _ = loops_through(self.edges[kind], self.where(kind))
+            loops, _ = loops_and_paths(self.edges[kind], self.where(kind))
         except InputError:
             if copies == 1:
                 raise
-            return loops_through(whole_turn(self.edges[kind], copies, start, cut=True), self.where(kind))[0]
+            loops, copies = (
+                loops_and_paths(whole_turn(self.edges[kind], copies, start, cut=True), self.where(kind))[0],
+                1,
+            )
+        rings = sorted((loop for loop in loops if _encloses(loop)), key=_area)
+        parts = [part for ring in zip(rings[::2], rings[1::2]) for part in _ring(*ring)]
+        loops = [loop for loop in loops if loop not in rings] + parts
         return [rotate(loop, 2 * math.pi * k / copies) for k in range(copies) for loop in loops]
 
 
@@ -187,12 +194,15 @@ def _stator(draft: Draft, section: Section, unit: str) -> Stator:
     bore, size = min(_reach([inner])), math.sqrt(_area(outer) / math.pi)
     if max(_reach([outer])) > size + WELD:
         draft.leave(f"layer {layer}", "not round outside", "a circle of the same area here")
-    paths, holes = _paths_off(inner, bore), []
+    paths, holes = _slot_paths(inner, bore), []
     for shape in [*(section.slots() if not paths else []), *(loop for loop in loops if not _encloses(loop))]:
-        pieces = _paths_off(shape, bore)
+        pieces = _slot_paths(shape, bore)
         paths += pieces
         holes += [] if pieces else [shape]
-    wires = [loop for loop in section.shapes("winding", "stator") if min(_reach([loop])) > bore - WELD]
+    drawn, section.names["coil"] = section.edges["winding"], section.names["winding"]
+    section.edges["coil"] = [edge for edge in drawn if min(map(abs, edge[:2])) < bore - WELD]  # of a wound rotor
+    section.edges["winding"] = [edge for edge in drawn if min(map(abs, edge[:2])) >= bore - WELD]
+    wires = section.shapes("winding", "stator")
     rooms = [] if paths else [hole for hole in holes if any(_share(wire, hole) > OVERLAP for wire in wires)]
     for key, radius in {"outer_diameter_mm": size, "bore_diameter_mm": bore}.items():
         draft.take("geometry.stator", f"layer {layer}, {unit}", **{key: in_mm(2 * radius)})
@@ -252,13 +262,17 @@ def _rotor(draft: Draft, section: Section, stator: Stator) -> int:
     outline = max(rings, key=_area)
     surface = max(_reach([outline]))
     holes = [loop for loop in loops if not _encloses(loop)]
-    magnets, bars, pockets = (section.shapes(kind, "rotor") for kind in ("magnet", "bar", "pocket"))
-    _draw(draft, "notches", layer, _paths_off(outline, surface))
+    magnets, bars, pockets = (section.shapes(k, "rotor") for k in ("magnet", "bar", "pocket"))
+    coils = section.shapes("coil", "rotor")
+    _draw(draft, "notches", layer, _slot_paths(outline, surface))
     iron = Profile(outline, tuple(holes))
-    cut = [loop for loop in [*pockets, *magnets, *bars] if _share(loop, iron) > OVERLAP]
+    cut = [loop for loop in [*pockets, *magnets, *bars, *coils] if _share(loop, iron) > OVERLAP]
     _draw(draft, "pockets", section.names.get("pocket", layer), unite([*holes, *cut]) if cut else holes)
     _draw(draft, "magnets", section.names.get("magnet", ""), magnets)
     _draw(draft, "bars", section.names.get("bar", ""), bars)
+    _draw(draft, "coils", section.names["coil"], coils)
+    if coils:
+        draft.assume("geometry.rotor", "as usual", fill=USUAL_FILL, end_mm=round(in_mm(0.2 * surface), 4))
     gap = stator.bore - max([surface, *_reach(magnets)])
     if not 0.2e-3 <= gap <= 20e-3:
         right = "a rotor inside the bore, with an air gap from 0.2 to 20 mm"
@@ -322,7 +336,7 @@ def _draw(draft: Draft, name: str, layer: str, shapes: Sequence[Loop]) -> None:
 
 def _repeated(shapes: Sequence[Loop]) -> tuple[int, list[Loop]]:
     """How often a pattern stands around the axis, and its shapes around +x."""
-    centres = np.array([sum(complex(*p[:2]) for p in loop) / len(loop) for loop in shapes])
+    centres = np.array([np.mean([z for edge in edges_of(loop) for z in (edge[0], middle(edge))]) for loop in shapes])
     areas = np.array([_area(loop) for loop in shapes])
     for copies in range(min(len(shapes), MOST_COPIES), 0, -1):
         if len(shapes) % copies:
@@ -337,7 +351,7 @@ def _repeated(shapes: Sequence[Loop]) -> tuple[int, list[Loop]]:
     return copies, [loop for loop, here in zip(shapes, first) if here]
 
 
-def _paths_off(loop: Loop, radius: float) -> list[Loop]:
+def _slot_paths(loop: Loop, radius: float) -> list[Loop]:
     """What of a loop, or of an open path, lies off a circle around the axis: paths from it to it, anticlockwise."""
     drawn = [part for edge in edges_of(loop) for part in _split(edge, radius)]
     starts = [k for k, edge in enumerate(drawn) if abs(abs(edge[0]) - radius) < WELD]
@@ -412,13 +426,19 @@ def _encloses(loop: Loop) -> bool:
     return abs(turn) > math.pi
 
 
+def _ring(inner: Loop, outer: Loop) -> list[Loop]:
+    """Between two circles around the axis: its halves."""
+    r, R = (math.sqrt(_area(loop) / math.pi) for loop in (inner, outer))
+    return [((s * R, 0.0, 1.0), (-s * R, 0.0, 0.0), (-s * r, 0.0, -1.0), (s * r, 0.0, 0.0)) for s in (1, -1)]
+
+
 def _area(loop: Loop) -> float:
     return abs(loop_area(loop))
 
 
 def _reach(loops: Iterable[Loop]) -> list[float]:
-    """Distances from the axis (m) of corners and arcs."""
-    return radii((Outline(1, tuple(loops)),))
+    """Distances from the axis (m) of corners, of arcs, and of straight edges where they are nearest."""
+    return radii((Outline(1, tuple((*loop, loop[0]) for loop in loops)),))
 
 
 def _share(loop: Loop, region: Loop | Profile) -> float:

@@ -64,9 +64,7 @@ class Sheet:
     def arc(self, layer, radius, a, b):
         """Around the axis, from one angle (rad) to another."""
         ends = (math.degrees(a), math.degrees(b))
-        self.space.add_arc(
-            self.at(0j), radius / self.unit, *ends, dxfattribs={"layer": self.names.get(layer, layer)}
-        )
+        self.space.add_arc(self.at(0j), radius / self.unit, *ends, dxfattribs={"layer": self.names.get(layer, layer)})
 
     def circle(self, layer, radius):
         self.space.add_circle(self.at(0j), radius / self.unit, dxfattribs={"layer": self.names.get(layer, layer)})

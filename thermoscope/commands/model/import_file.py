@@ -16,18 +16,29 @@ from thermoscope.console.options import Json, Out
 from thermoscope.console.summary import Summary
 from thermoscope.console.terminal import give
 
-File = Annotated[Path, typer.Argument(metavar="FILE", help="Of Motor-CAD (.mot) or pyleecan (.json).")]
+File = Annotated[
+    Path, typer.Argument(metavar="FILE", help="Of Motor-CAD (.mot), of pyleecan (.json), or a drawing (.dxf).")
+]
 Template = Annotated[
     str, typer.Option(metavar="NAME", help=f"Frame and cooling, where the file has none: {', '.join(TEMPLATES)}.")
 ]
+Stack = Annotated[float | None, typer.Option(metavar="MM", help="Length of the stack, which no drawing has.")]
+Units = Annotated[str, typer.Option(metavar="UNIT", help="Of a drawing that does not say its own: mm, cm, m or inch.")]
 
 
-def import_(file: File, out: Out = None, family_template: Template = USUAL_TEMPLATE, target: Json = None) -> int:
+def import_(
+    file: File,
+    out: Out = None,
+    family_template: Template = USUAL_TEMPLATE,
+    stack_mm: Stack = None,
+    units: Units = "",
+    target: Json = None,
+) -> int:
     """A machine file of another program as one of ours: what was taken, what is assumed, what was not understood."""
     from geom import import_draft
     from geom.machine_file import machine_from
 
-    draft = import_draft(file, family_template)
+    draft = import_draft(file, family_template, stack_mm, units)
     checked_losses(machine_from(draft.sections(), str(file)))  # nothing is written that cannot be built
     target_file = write_machine_file(draft.name, draft.toml(), out or Path())
     document = {
