@@ -48,7 +48,7 @@ def import_draft(
     """
     suffix = path.suffix.lower()
     if suffix not in IMPORTERS:
-        right = f"one of: {', '.join(IMPORTERS)}"
+        right = f"one of: {', '.join(IMPORTERS)}; a loss map with --machine MACHINE"
         raise InputError(f"{path.suffix or 'no ending'} is no machine file of another program", str(path), right)
     if suffix == DRAWING:
         return read_section(path, family_template, stack_mm, units)
