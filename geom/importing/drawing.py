@@ -20,7 +20,7 @@ from geom.limits import MACHINE_BYTES
 
 RIGHT = "a drawing of the cross-section, saved by its program as DXF"
 WELD = 5e-6  # m; ends nearer than this are one: a tenth of the thinnest liner
-MOST_EDGES = 100_000  # a whole machine of 100 slots with every wire drawn has half as many
+MOST_EDGES = 100_000  # a whole machine of 100 slots with every wire edges has half as many
 FLAT = 2e-6  # m; by which chords leave a spline or an ellipse
 UNITS = {"mm": 1e-3, "cm": 1e-2, "m": 1.0, "inch": 0.0254}
 _INSUNITS = {1: 0.0254, 2: 0.3048, 4: 1e-3, 5: 1e-2, 6: 1.0, 8: 2.54e-8, 9: 2.54e-5, 13: 1e-6, 14: 0.1}
@@ -148,7 +148,7 @@ def turned(edge: Edge, angle: float) -> Edge:
 
 
 def sector_of(iron: Sequence[Edge], where: str) -> tuple[int, float]:
-    """How often what is drawn stands around the axis, and the angle (rad) at which it begins; InputError for others."""
+    """How often what is edges stands around the axis, and the angle (rad) at which it begins; InputError for others."""
     points = (along(edge, float(share)) for edge in iron for share in np.linspace(0, 1, 129))
     angles = sorted({cmath.phase(z) for z in points if abs(z) > WELD})
     if not angles:
@@ -163,7 +163,7 @@ def sector_of(iron: Sequence[Edge], where: str) -> tuple[int, float]:
     return round(count), start
 
 
-def whole_turn(drawn: Iterable[Edge], copies: int, start: float, cut: bool) -> list[Edge]:
+def whole_turn(edges: Iterable[Edge], copies: int, start: float, cut: bool) -> list[Edge]:
     """What stands around the axis.  cut : without the lines along both ends of the sector"""
     pitch = 2 * math.pi / copies
     sides = [cmath.exp(-1j * (start + k * pitch)) for k in (0, 1)]
@@ -174,19 +174,19 @@ def whole_turn(drawn: Iterable[Edge], copies: int, start: float, cut: bool) -> l
     def is_cut(edge: Edge) -> bool:
         return not edge[2] and any(on_ray(edge[0], side) and on_ray(edge[1], side) for side in sides)
 
-    kept = [edge for edge in drawn if copies == 1 or not cut or not is_cut(edge)]
-    return [turned(edge, k * pitch) for k in range(copies) for edge in kept]
+    rest = [edge for edge in edges if copies == 1 or not cut or not is_cut(edge)]
+    return [turned(edge, k * pitch) for k in range(copies) for edge in rest]
 
 
 def loops_and_paths(
-    drawn: Sequence[Edge], where: str, paths: bool = False, seams: bool = False
+    edges: Sequence[Edge], where: str, paths: bool = False, seams: bool = False
 ) -> tuple[list[Loop], list[Loop]]:
     """What the edges enclose as loops, anticlockwise, each without others inside it; and paths that stay open.
 
     paths : whether these may be;  seams : whether a radius between two other edges divides what is one
     Raises InputError with the point where an outline is open.
     """
-    every = _welded(drawn)
+    every = _welded(edges)
     if seams:
         ends = Counter(z for edge in every for z in edge[:2])
         every = [edge for edge in every if not (_is_radial(edge) and min(ends[z] for z in edge[:2]) > 2)]
@@ -247,20 +247,20 @@ def edges_of(loop: Loop) -> list[Edge]:
     return [(complex(*a[:2]), complex(*b[:2]), a[2]) for a, b in zip(loop, (*loop[1:], loop[0]))]
 
 
-def _welded(drawn: Sequence[Edge]) -> list[Edge]:
+def _welded(edges: Sequence[Edge]) -> list[Edge]:
     """With one point for ends that nearly meet, circles around the axis as such, and nothing twice."""
     from scipy.sparse import coo_array
     from scipy.sparse.csgraph import connected_components
     from scipy.spatial import cKDTree
 
-    if not drawn:
+    if not edges:
         return []
-    z = np.array([end for edge in drawn for end in edge[:2]])
+    z = np.array([end for edge in edges for end in edge[:2]])
     pairs = cKDTree(np.column_stack([z.real, z.imag])).query_pairs(WELD, output_type="ndarray")
     links = coo_array((np.ones(len(pairs)), (pairs[:, 0], pairs[:, 1])), shape=(z.size, z.size))
     _, group = connected_components(links, directed=False)
     node = (np.bincount(group, z.real) + 1j * np.bincount(group, z.imag)) / np.bincount(group)
-    around = sorted((abs(edge[0]), k) for k, edge in enumerate(drawn) if _is_concentric(edge))
+    around = sorted((abs(edge[0]), k) for k, edge in enumerate(edges) if _is_concentric(edge))
     circle, last = 0.0, -1.0
     for radius, k in around:
         circle = circle if radius - last < WELD else round(radius, 9)
@@ -269,7 +269,7 @@ def _welded(drawn: Sequence[Edge]) -> list[Edge]:
             node[at] *= circle / abs(node[at])
     concentric = {k for _, k in around}
     out: dict[Any, Edge] = {}
-    for k, (_, _, bulge) in enumerate(drawn):
+    for k, (_, _, bulge) in enumerate(edges):
         a, b = complex(node[group[2 * k]]), complex(node[group[2 * k + 1]])
         if a == b:
             continue

@@ -5,6 +5,7 @@ from __future__ import annotations
 import cmath
 import math
 import re
+import tomllib
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -36,24 +37,17 @@ USUAL_FILL = 0.4  # of round wire in what the winding fills: textbooks have 0.35
 MOST_SIDES = 4  # shapes of a winding in a slot: coil sides, two beside or above each other; more are conductors
 LINER_W_M_K = 0.16  # of aramid paper
 OVERLAP = 0.01  # share of a shape's area that lies in the iron, from which on it has a hole there
-KEPT = 0.5  # of a slot's room: a winding drawn smaller is no filling with a liner around it
+SLIVER = 0.005  # of a slot's depth: a room that begins so near to a corner of the slot begins at it
+LEAST_SHARE = 0.5  # of a slot's room: a winding drawn smaller is no filling with a liner around it
 # Words of a layer's name; the first of these kinds that one names is meant: "stator slot" is the slot.
-_NUT = words_of("slot slots nut nuten encoche encoches cava cave ranura ranuras")
-_WIRES = (ROLE_WORDS[Role.WINDING] | words_of("conductor conductors leiter")) - _NUT
-KINDS: dict[str, frozenset[str]] = {
-    "liner": words_of("liner insulation isolation isolierung nutisolation isolant aislamiento isolante"),
-    "wedge": words_of("wedge keil nutkeil cale cuña"),
-    "pocket": words_of("pocket pockets barrier barriers hole holes cavity tasche taschen magnettasche flusssperre"),
-    "winding": _WIRES,
-    "magnet": ROLE_WORDS[Role.MAGNET],
-    "bar": ROLE_WORDS[Role.CAGE] | words_of("bar bars stab stäbe barre barra"),
-    "shaft": ROLE_WORDS[Role.SHAFT],
-    "slot": _NUT,
-    "gap": words_of("gap airgap luftspalt entrefer entrehierro traferro"),
-    "housing": ROLE_WORDS[Role.HOUSING],
-    "rotor": ROLE_WORDS[Role.ROTOR],
-    "stator": ROLE_WORDS[Role.IRON],
+_WORDS = tomllib.loads(Path(__file__).with_name("layers.toml").read_text("utf-8"))
+_ROLES = {"winding": Role.WINDING, "magnet": Role.MAGNET, "bar": Role.CAGE, "shaft": Role.SHAFT} | {
+    "housing": Role.HOUSING,
+    "rotor": Role.ROTOR,
+    "stator": Role.IRON,
 }
+_ROLE_WORDS = {kind: ROLE_WORDS[role] - words_of(_WORDS["slot"]) for kind, role in _ROLES.items()}
+KINDS = {kind: words_of(text) | _ROLE_WORDS.get(kind, frozenset()) for kind, text in _WORDS.items()}
 LAYERS = "layers named by part, such as stator, slot, winding, magnet, rotor, shaft, housing"
 _WORD = re.compile(r"[^\W\d_]+")
 
@@ -130,12 +124,12 @@ def read_section(path: Path, family_template: str, stack_mm: float | None = None
     draft.assume("machine", "any cross-section", family="cross-section")
     kinds: dict[str, list[Edge]] = {}
     names: dict[str, str] = {}
-    for layer, found in drawing.layers.items():
+    for layer, lines in drawing.layers.items():
         if kind := kind_of(layer):
-            kinds[kind] = kinds.get(kind, []) + found
+            kinds[kind] = kinds.get(kind, []) + lines
             names[kind] = ", ".join(filter(None, [names.get(kind, ""), layer]))
         else:
-            draft.leave(f"layer {layer}", f"{len(found)} lines", "names no part")
+            draft.leave(f"layer {layer}", f"{len(lines)} lines", "names no part")
     for kind in ("wedge", "gap"):
         if kinds.pop(kind, None):
             draft.leave(f"layer {names[kind]}", "lines", "slot openings and gaps are air here")
@@ -149,9 +143,9 @@ def read_section(path: Path, family_template: str, stack_mm: float | None = None
     axis = axis_of(kinds["stator"])
     if axis:
         at = f"x = {1e3 * axis.real:.6g}, y = {1e3 * axis.imag:.6g} mm"
-        draft.leave("axis", at, "taken as the axis: the centre of the stator's longest arc")
-    moved = {kind: [(a - axis, b - axis, bulge) for a, b, bulge in drawn] for kind, drawn in kinds.items()}
-    section = Section(path, moved, names)
+        draft.leave("axis", at, "taken as the axis: the stator's longest arc goes around it")
+    around = {kind: [(a - axis, b - axis, bulge) for a, b, bulge in lines] for kind, lines in kinds.items()}
+    section = Section(path, around, names)
     unit = f"$INSUNITS, {1e3 * drawing.unit:g} mm" if not units else "--units"
     stator = _stator(draft, section, unit)
     draft.take("geometry.stator", "--stack-mm, or a text in the drawing", stack_length_mm=stack_mm)
@@ -199,9 +193,9 @@ def _stator(draft: Draft, section: Section, unit: str) -> Stator:
         pieces = _slot_paths(shape, bore)
         paths += pieces
         holes += [] if pieces else [shape]
-    drawn, section.names["coil"] = section.edges["winding"], section.names["winding"]
-    section.edges["coil"] = [edge for edge in drawn if min(map(abs, edge[:2])) < bore - WELD]  # of a wound rotor
-    section.edges["winding"] = [edge for edge in drawn if min(map(abs, edge[:2])) >= bore - WELD]
+    every, section.names["coil"] = section.edges["winding"], section.names["winding"]
+    section.edges["coil"] = [edge for edge in every if min(map(abs, edge[:2])) < bore - WELD]  # of a wound rotor
+    section.edges["winding"] = [edge for edge in every if min(map(abs, edge[:2])) >= bore - WELD]
     wires = section.shapes("winding", "stator")
     rooms = [] if paths else [hole for hole in holes if any(_share(wire, hole) > OVERLAP for wire in wires)]
     for key, radius in {"outer_diameter_mm": size, "bore_diameter_mm": bore}.items():
@@ -242,7 +236,7 @@ def _winding(draft: Draft, section: Section, stator: Stator, poles: int) -> tupl
     straight = max(in_mm(0.06 * stator.bore), 0.5)
     draft.assume("geometry.winding", "in proportion to the bore", straight_mm=round(straight, 4))
     walls = sum(loop_length(loop) for loop in rooms)
-    if count <= MOST_SIDES and KEPT < share < 1 - 1e-3:
+    if count <= MOST_SIDES and LEAST_SHARE < share < 1 - 1e-3:
         liner = (room - wires) / walls
         h = round(LINER_W_M_K / liner, 1)
         words = f"{1e3 * liner:.3g} mm between winding and slot as drawn, at {LINER_W_M_K:g} W/m/K"
@@ -353,17 +347,17 @@ def _repeated(shapes: Sequence[Loop]) -> tuple[int, list[Loop]]:
 
 def _slot_paths(loop: Loop, radius: float) -> list[Loop]:
     """What of a loop, or of an open path, lies off a circle around the axis: paths from it to it, anticlockwise."""
-    drawn = [part for edge in edges_of(loop) for part in _split(edge, radius)]
-    starts = [k for k, edge in enumerate(drawn) if abs(abs(edge[0]) - radius) < WELD]
+    sides = [part for edge in edges_of(loop) for part in _split(edge, radius)]
+    starts = [k for k, edge in enumerate(sides) if abs(abs(edge[0]) - radius) < WELD]
     paths = []
     for k, start in enumerate(starts):
         end = starts[(k + 1) % len(starts)]
-        run = [drawn[(start + i) % len(drawn)] for i in range((end - start - 1) % len(drawn) + 1)]
+        run = [sides[(start + i) % len(sides)] for i in range((end - start - 1) % len(sides) + 1)]
         if len(run) == 1 and _on_circle(run[0], radius):
             continue
         path = tuple([(a.real, a.imag, bulge) for a, _, bulge in run] + [(run[-1][1].real, run[-1][1].imag, 0.0)])
-        ahead = cmath.phase(run[-1][1] / run[0][0]) > 0
-        paths.append(path if ahead else tuple((*p[:2], -q[2]) for p, q in zip(path[::-1], [*path[-2::-1], path[-1]])))
+        rising = cmath.phase(run[-1][1] / run[0][0]) > 0
+        paths.append(path if rising else tuple((*p[:2], -q[2]) for p, q in zip(path[::-1], [*path[-2::-1], path[-1]])))
     return paths
 
 
@@ -387,13 +381,15 @@ def _on_circle(edge: Edge, radius: float) -> bool:
 
 def _room(path: Loop, low: float, where: str) -> Loop:
     """What of a slot lies beyond a radius (m): closed by a circle around the axis, with the slot's own sides."""
-    drawn = [part for edge in edges_of(path)[:-1] for part in _halves(edge, low)]
-    up = next((k for k, edge in enumerate(drawn) if abs(edge[1]) > low + WELD), None)
-    down = next((k for k in reversed(range(len(drawn))) if abs(drawn[k][0]) > low + WELD), None)
+    corners = [math.hypot(x, y) for x, y, _ in path]
+    low = max((r for r in corners if abs(r - low) < SLIVER * (max(corners) - corners[0])), default=low)
+    sides = [part for edge in edges_of(path)[:-1] for part in _halves(edge, low)]
+    up = next((k for k, edge in enumerate(sides) if abs(edge[1]) > low + WELD), None)
+    down = next((k for k in reversed(range(len(sides))) if abs(sides[k][0]) > low + WELD), None)
     if up is None or down is None:
         raise InputError(f"the winding begins {1e3 * low:.5g} mm from the axis, beyond the slots", where, LAYERS)
-    first, last = piece(drawn[up], _crossing(drawn[up], low), 1.0), piece(drawn[down], 0.0, _crossing(drawn[down], low))
-    run = [first, *drawn[up + 1 : down], last]
+    first, last = piece(sides[up], _crossing(sides[up], low), 1.0), piece(sides[down], 0.0, _crossing(sides[down], low))
+    run = [first, *sides[up + 1 : down], last]
     a, b = (z * low / abs(z) if abs(abs(z) - low) < WELD else z for z in (last[1], first[0]))
     return loop_through([(b, first[2]), *((e[0], e[2]) for e in run[1:]), (a, arc(a, b))])
 

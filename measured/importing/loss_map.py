@@ -128,11 +128,13 @@ def _of_grid(corner: str, down: Array, along: Array, watts: Array, file: Path) -
 
 
 def _arrays(one: Mapping[str, Any]) -> Iterator[tuple[str, Array]]:
-    for name, inside in one.items():
+    for variable, inside in one.items():
         if isinstance(inside, Mapping):
             yield from _arrays(inside)
-        elif not name.startswith("__") and (x := np.squeeze(np.asarray(inside))).dtype.kind in "fiub" and x.ndim < 3:
-            yield name, x.astype(float)
+            continue
+        x = np.squeeze(np.asarray(inside))
+        if not variable.startswith("__") and x.dtype.kind in "fiub" and x.ndim < 3:
+            yield variable, x.astype(float)
 
 
 def _of_matrices(arrays: Mapping[str, Array], file: Path) -> dict[str, tuple[str, Array]]:
@@ -142,7 +144,7 @@ def _of_matrices(arrays: Mapping[str, Array], file: Path) -> dict[str, tuple[str
     )
     if not shapes:
         raise InputError(
-            "holds no columns of numbers", str(file), "matrices of speed, torque and losses, saved with -v7"
+            "holds no columns of numbers", str(file), "speed, torque and losses point by point, saved with -v7"
         )
     shape = shapes.most_common(1)[0][0]
     out = {}

@@ -19,7 +19,8 @@ from thermoscope.console.summary import Summary
 from thermoscope.console.terminal import give
 
 File = Annotated[
-    Path, typer.Argument(metavar="FILE", help="Of Motor-CAD (.mot), of pyleecan (.json), or a drawing (.dxf).")
+    Path,
+    typer.Argument(metavar="FILE", help="Of Motor-CAD (.mot), of pyleecan (.json), a drawing (.dxf), or a loss map."),
 ]
 Template = Annotated[
     str, typer.Option(metavar="NAME", help=f"Frame and cooling, where the file has none: {', '.join(TEMPLATES)}.")
@@ -31,7 +32,9 @@ Units = Annotated[
 OfMachine = Annotated[
     str | None, typer.Option("--machine", metavar="MACHINE", help="Of a loss map: the machine whose losses it says.")
 ]
-Copper = Annotated[float | None, typer.Option(metavar="DEGC", help="Of a loss map: the winding's temperature in it.")]
+Copper = Annotated[
+    float | None, typer.Option("--copper-degc", metavar="DEGC", help="Of a loss map: the winding's temperature in it.")
+]
 
 
 def import_(

@@ -36,7 +36,7 @@ HEATED = {  # kind of a loss -> role of the parts it heats
     "mechanical": Role.BEARING,
     "windage": Role.AIR_GAP,
 }
-COVERED = {"iron": (Role.IRON, Role.ROTOR), "mechanical": (Role.BEARING, Role.AIR_GAP)}  # and for the others their own
+COVERED = {"iron": (Role.IRON, Role.ROTOR), "mechanical": (Role.BEARING, Role.AIR_GAP)}  # else its own alone
 
 
 def losses_draft(file: Path, machine_file: Path, units: str, copper_degC: float | None) -> tuple[Draft, str]:
@@ -48,29 +48,29 @@ def losses_draft(file: Path, machine_file: Path, units: str, copper_degC: float 
     machine = load_machine_file(machine_file)
     ratings = machine.sections.get("ratings", {})
     pairs = {quantity: unit for pair in filter(None, units.split(",")) for quantity, _, unit in [pair.partition("=")]}
-    given = read_loss_map(file, pairs, float(ratings.get("speed_rpm", USUAL_RPM)))
+    loss_map = read_loss_map(file, pairs, float(ratings.get("speed_rpm", USUAL_RPM)))
     draft = new_draft(file_stem(f"{machine.name}-{file.stem}"), file, "a loss map")
-    for name, why in given.notes.items():
+    for name, why in loss_map.notes.items():
         draft.leave(name, "not used", why)
     heated = _places(machine)
-    for kind in given.losses:
+    for kind in loss_map.losses:
         if kind in heated:
-            _enter(draft, given, kind, heated[kind], copper_degC)
+            _enter(draft, loss_map, kind, heated[kind], copper_degC)
         else:
-            columns = ", ".join(column.name for column in given.losses[kind][0])
+            columns = ", ".join(column.name for column in loss_map.losses[kind][0])
             draft.leave(columns, kind, f"the machine has no {HEATED[kind]} to heat")
-    for name, column in given.axes.items():
+    for name, column in loss_map.axes.items():
         if name not in ratings:
             half = float(f"{column.values[-1] / 2:.4g}")
             draft.assume("ratings", f"half of the largest {column.name}: change it", **{name: half})
-    if given.speed_rpm is not None and "speed_rpm" not in ratings:
-        draft.take("ratings", "the map's speed", speed_rpm=given.speed_rpm)
-    return draft, _spliced(draft, machine, machine_file, {kind for kind in given.losses if kind in heated})
+    if loss_map.speed_rpm is not None and "speed_rpm" not in ratings:
+        draft.take("ratings", "the map's speed", speed_rpm=loss_map.speed_rpm)
+    return draft, _spliced(draft, machine, machine_file, {kind for kind in loss_map.losses if kind in heated})
 
 
-def _enter(draft: Draft, given: LossMap, kind: str, at: Any, copper_degC: float | None) -> None:
-    section, (columns, watts) = f"losses.{kind}", given.losses[kind]
-    (first, down), (second, along) = given.axes.items()
+def _enter(draft: Draft, loss_map: LossMap, kind: str, at: Any, copper_degC: float | None) -> None:
+    section, (columns, watts) = f"losses.{kind}", loss_map.losses[kind]
+    (first, down), (second, along) = loss_map.axes.items()
     _say(draft, section, columns, kind="map")
     draft.assume(section, "the parts of this kind, by their copper or volume", at=at)
     for key, column in (("at_speed", down), ("at_torque", along)):
@@ -80,18 +80,18 @@ def _enter(draft: Draft, given: LossMap, kind: str, at: Any, copper_degC: float 
     words = f"{' + '.join(column.name for column in columns)}"
     draft.take(section, words, P_W=[[float(f"{x:.{DIGITS}g}") for x in row] for row in watts])
     if first != "speed_rpm" and kind != "copper":
-        if given.speed_rpm is None:
+        if loss_map.speed_rpm is None:
             right = "a column of the speed at which they hold, one for all points"
             raise InputError(f"{words} over id and iq says no speed", str(draft.path), right)
         exponent = SPEED_EXPONENTS.get(kind, IRON_EXPONENT)
-        of = {"input": "speed_rpm", "at": given.speed_rpm, "exponent": exponent}
-        draft.assume(section, f"the map holds at {given.speed_rpm:g} rpm; the exponent is the usual one", of=of)
+        of = {"input": "speed_rpm", "at": loss_map.speed_rpm, "exponent": exponent}
+        draft.assume(section, f"the map holds at {loss_map.speed_rpm:g} rpm; the exponent is the usual one", of=of)
     if kind != "copper":
         return
     draft.take(section, "copper", alpha_1_K=ALPHA_CU)
-    if copper_degC is not None or given.winding_degC is not None:
+    if copper_degC is not None or loss_map.winding_degC is not None:
         source = "--copper-degc" if copper_degC is not None else "the file's temperature of the winding"
-        draft.take(section, source, reference_degC=given.winding_degC if copper_degC is None else copper_degC)
+        draft.take(section, source, reference_degC=loss_map.winding_degC if copper_degC is None else copper_degC)
     else:
         draft.assume(section, "winding in the map: say it by --copper-degc", reference_degC=COLD)
 
@@ -149,7 +149,7 @@ def _spliced(draft: Draft, machine: Machine, file: Path, kinds: set[str]) -> str
             "is no machine file", str(file), "a .toml file: `model import` makes one of other programs' files"
         )
     text = path.read_text(encoding="utf-8")
-    own, losses = tomllib.loads(text).get("losses", {}), machine.sections.get("losses", {})
+    tables, losses = tomllib.loads(text).get("losses", {}), machine.sections.get("losses", {})
     if not all(isinstance(table, Mapping) for table in losses.values()):
         raise InputError("its losses are plain numbers", f"{file} [losses]", "tables: [losses.copper], [losses.iron]")
     covered = {role for kind in kinds for role in COVERED.get(kind, (HEATED[kind],))}
@@ -158,7 +158,7 @@ def _spliced(draft: Draft, machine: Machine, file: Path, kinds: set[str]) -> str
     for name, table in losses.items():
         if name not in kinds and _role(machine, table.get("at")) not in covered:
             draft.leave(f"losses.{toml_key(name)}", table.get("kind", ""), "stays as it was: no column is of its part")
-        elif name in own:
+        elif name in tables:
             del document["losses"][name]
         else:
             document["machine"].setdefault("without", []).append(f"losses.{toml_key(name)}")
