@@ -71,8 +71,9 @@ def read_loss_map(file: Path, units: Mapping[str, str], rated_rpm: float) -> Los
             raise InputError(f"'{quantity}={unit}' is no unit of a loss map", "--units", right)
     columns = _columns(file)
     names = _axis_names(columns, file)
-    kinds = {name: kind for name in columns if name not in names.values() and (kind := _kind(name))}
-    notes = {name: "no loss of a part" for name in columns.keys() - kinds.keys() - {*names.values()}}
+    filled = [name for name, (_, x) in columns.items() if np.isfinite(x).any() and name not in names.values()]
+    kinds = {name: kind for name in filled if (kind := _kind(name))}
+    notes = {name: "no loss of a part" for name in columns if name not in kinds and name not in names.values()}
     axes = {i: _axis(i, name, *columns[name], units, rated_rpm) for i, name in names.items()}
     losses = _losses(columns, kinds, axes, units)
     for name in _sums(losses, kinds):
@@ -150,6 +151,9 @@ def _of_matrices(arrays: Mapping[str, Array], file: Path) -> dict[str, tuple[str
     out = {}
     for label, x in arrays.items():
         name, unit = split_unit(label)
+        if x.ndim == 1 and len(shape) == 2 and x.size == shape[0] == shape[1]:
+            what = f"{name} may stand down or along {shape[0]} x {shape[1]} points"
+            raise InputError(what, str(file), "a matrix of every axis, as large as those of the losses")
         if x.ndim == 1 and len(shape) == 2 and x.size == shape[0] and shape[0] != shape[1]:
             x = x[:, None]
         if x.shape == shape or x.ndim == 0 or (x.ndim + 1, x.size) == (2, shape[-1]) or x.shape == (shape[0], 1):
@@ -252,6 +256,8 @@ def _sums(losses: Mapping[str, Column], kinds: Mapping[str, str]) -> list[str]:
 def _one_sign(axes: Mapping[str, Column], losses: list[Column], notes: dict[str, str]) -> Any:
     """Which points count: with numbers, and of an axis with both signs those of the longer half."""
     keep = np.all([np.isfinite(c.values) for c in [*axes.values(), *losses]], axis=0)
+    if not keep.all():
+        notes["points"] = f"{np.sum(~keep)} of {keep.size} have no numbers and are left out"
     for axis in axes.values():
         low, high = np.min(axis.values, where=keep, initial=0.0), np.max(axis.values, where=keep, initial=0.0)
         if low < -ALIKE * high and high > -ALIKE * low:
@@ -276,7 +282,7 @@ def _grid(axes: list[Array], losses: list[Array], file: Path, notes: dict[str, s
     if second.size < 2:
         raise InputError("has one value of the second axis", str(file), "two torques at each speed, or more")
     if not whole:
-        notes["points"] = f"no grid: {second.size} values at each of {first.size}, nearest ones beyond the envelope"
+        notes["grid"] = f"none: {second.size} values at each of {first.size}, nearest ones beyond the envelope"
     for P in losses:
         if P.min() < -ALIKE * P.max():
             raise InputError(f"a loss is {P.min():.4g} W", str(file), "watts that become heat")

@@ -125,6 +125,14 @@ def test_a_map_within_an_envelope_ends_at_its_edge(tmp_path):
     assert size(losses["copper"], speed_rpm=12000.0, torque_Nm=280.0) == pytest.approx(edge, rel=1e-4)
 
 
+def test_points_without_numbers_are_left_out(tmp_path):
+    """As a tool writes what the machine does not reach."""
+    losses = imported(lab(tmp_path, Magnet_Loss=np.where(N * T > 1e6, np.nan, watts(N, T)["Magnet_Loss"])), tmp_path)
+    assert size(losses["magnet"], speed_rpm=6000.0, torque_Nm=140.0) == pytest.approx(240.0, rel=DIGITS)
+    last = watts(12000.0, 56.0)["Stator_Copper_Loss_DC"]  # of 28, 56, 84 N m: 84 at 12000 rpm are beyond
+    assert size(losses["copper"], speed_rpm=12000.0, torque_Nm=280.0) == pytest.approx(last, rel=DIGITS)
+
+
 def test_a_grid_is_one_loss_by_the_name_of_its_file(tmp_path):
     for corner, axes in (
         ("speed \\ torque [Nm]", (SPEED, TORQUE)),
@@ -215,6 +223,11 @@ def no_loss(folder):
     return text(folder / "bad.csv", {"speed": N.ravel(), "torque": T.ravel(), "Efficiency": T.ravel()})
 
 
+def square(folder):
+    scipy.io.savemat(folder / "bad.mat", {"Speed": SPEED, "Torque": np.arange(12.0), "Iron_Loss": np.ones((12, 12))})
+    return folder / "bad.mat"
+
+
 def new_matlab(folder):
     (folder / "bad.mat").write_bytes(b"MATLAB 7.3 MAT-file" + bytes(200))
     return folder / "bad.mat"
@@ -232,6 +245,7 @@ WRONG = {
     "a negative loss": (negative, {"units": "power=W"}, "a loss is -275 W"),
     "no loss": (no_loss, {}, "no column is of a loss"),
     "a foreign unit": (long, {"units": "speed=furlong"}, "'speed=furlong' is no unit of a loss map"),
+    "axes that may stand either way": (square, {}, "Speed may stand down or along 12 x 12 points"),
     "MATLAB 7.3": (new_matlab, {}, "MATLAB file of version 7.3"),
     "a damaged file": (damaged, {}, "not readable as a MATLAB file"),
     "iron over currents without a speed": (over_currents, {}, "over id and iq says no speed"),

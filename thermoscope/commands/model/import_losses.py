@@ -18,7 +18,7 @@ from geom.description.roles import Role
 from geom.errors import InputError
 from geom.escapes import toml_key
 from geom.importing.assumptions import USUAL_RPM
-from geom.importing.draft import Draft, new_draft
+from geom.importing.draft import ASSUMED, Draft, new_draft
 from measured.importing.loss_map import BY_OPTION, IN_FILE, Column, LossMap, read_loss_map
 from thermoscope.case_folder.folder import load_machine_file
 
@@ -166,7 +166,8 @@ def _spliced(draft: Draft, machine: Machine, file: Path, kinds: set[str]) -> str
         del document["losses"]
     for entry in draft.entries:
         if entry.section == "ratings":
-            document.setdefault("ratings", tomlkit.table())[entry.key] = tomlkit.item(entry.value).comment(entry.source)
+            words = f"assumed: {entry.source}" if entry.kind == ASSUMED else entry.source
+            document.setdefault("ratings", tomlkit.table())[entry.key] = tomlkit.item(entry.value).comment(words)
     added = replace(draft, entries=[entry for entry in draft.entries if entry.section != "ratings"])
     return f"{tomlkit.dumps(document).rstrip()}\n\n{added.toml()}"
 
