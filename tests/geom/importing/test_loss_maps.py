@@ -9,6 +9,7 @@ import scipy.io
 
 from geom import InputError, load_machine
 from lumped.declarations.loss_tables import loss_laws
+from lumped.machine.motor import rated_inputs
 from lumped.schemas.reader import Table
 from measured.importing.loss_map import read_loss_map
 from thermoscope.commands.model.import_file import import_
@@ -191,6 +192,17 @@ def test_guesses_are_assumed_and_options_are_taken(tmp_path):
     by_option = imported(in_radians(tmp_path), tmp_path, units="speed=rpm,power=W")
     assert by_option["iron"]["at_speed"][-1] == pytest.approx(1256.637)
     assert np.array(by_option["iron"]["P_W"]) == pytest.approx(np.array(losses["iron"]["P_W"]) / 1000, rel=1e-4)
+
+
+def test_the_rated_point_has_what_the_map_reads(tmp_path):
+    """A torque stands in the machine's file, rated or assumed; where no loss reads it, it is no input."""
+    assert "torque_Nm" not in rated_inputs(load_machine(MACHINE))
+    imported(lab(tmp_path), tmp_path)
+    assert rated_inputs(load_machine(tmp_path / f"out/{MACHINE}-lab.toml"))["torque_Nm"] == 280.0
+    over = imported(over_currents(tmp_path, Speed=3000.0), tmp_path / "currents")
+    assert over["iron"]["speed"] == "id_A"
+    rated = rated_inputs(load_machine(tmp_path / f"currents/out/{MACHINE}-currents.toml"))
+    assert (rated["id_A"], rated["iq_A"]) == (150.0, 150.0)
 
 
 def test_losses_of_other_parts_stay(tmp_path):
