@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import tomllib
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from functools import cache
 from pathlib import Path
@@ -24,6 +24,7 @@ from geom.families.family import Family
 from geom.families.proportions import remedy
 from geom.importing.assumptions import USUAL_TEMPLATE
 from geom.importing.draft import Draft
+from geom.importing.dxf import read_section
 from geom.importing.motor_cad import read_motor_cad
 from geom.importing.pyleecan import read_pyleecan
 from geom.plugins import plugins
@@ -33,19 +34,26 @@ from geom.solids.step_prisms import LARGEST_MM
 LIBRARY = Path(__file__).parent / "machines"
 _HEADER = ("name", "family", "description", "source", "assumed", "like", "without")
 
-IMPORTERS = {".json": read_pyleecan, ".mot": read_motor_cad}
+DRAWING = ".dxf"
+IMPORTERS: dict[str, Callable[..., Draft]] = {".json": read_pyleecan, ".mot": read_motor_cad, DRAWING: read_section}
 
 
-def import_draft(path: Path, family_template: str = USUAL_TEMPLATE) -> Draft:
-    """The machine file in the making. Raises InputError for files of other kinds, and for what is wrong in them."""
-    reader = IMPORTERS.get(path.suffix.lower())
-    if reader is None:
-        raise InputError(
-            f"{path.suffix or 'no ending'} is no machine file of another program",
-            str(path),
-            f"one of: {', '.join(IMPORTERS)}",
-        )
-    return reader(path, family_template)
+def import_draft(
+    path: Path, family_template: str = USUAL_TEMPLATE, stack_mm: float | None = None, units: str = ""
+) -> Draft:
+    """The machine file in the making. Raises InputError for files of other kinds, and for what is wrong in them.
+
+    stack_mm, units : what a drawing may not know: length of the stack, unit of its coordinates
+    """
+    suffix = path.suffix.lower()
+    if suffix not in IMPORTERS:
+        right = f"one of: {', '.join(IMPORTERS)}; a loss map with --machine MACHINE"
+        raise InputError(f"{path.suffix or 'no ending'} is no machine file of another program", str(path), right)
+    if suffix == DRAWING:
+        return read_section(path, family_template, stack_mm, units)
+    if stack_mm is not None or units:
+        raise InputError("--stack-mm and --units are for drawings", str(path), "without them: the file knows both")
+    return IMPORTERS[suffix](path, family_template)
 
 
 def library() -> dict[str, Path]:

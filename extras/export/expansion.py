@@ -42,7 +42,8 @@ def _brush(law: th.BrushLoss) -> Sum:
 
 def _map(law: th.MapLoss) -> Sum:
     watts = tuple(np.ravel(law.watts).tolist())
-    return (Product(1.0, (Mapped(law.speed, law.torque, law.at_speed, law.at_torque, watts, True),)),)
+    grid = Mapped(law.speed, law.torque, law.at_speed, law.at_torque, watts, True)
+    return (Product(1.0, (grid, *(Powered(*t) for t in law.powers))),)
 
 
 def _stirred(law: th.Stirred) -> Sum:

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 SEGMENTS = 120  # of a full turn
 RAYS = 40  # around the axis along which a part is looked at
 ROUND = 0.02  # share of its volume by which a part may miss a body of revolution: bores, not fins
-STANDING = frozenset({th.Role.FOOT, th.Role.BASE})
+LONG = frozenset({th.Role.FOOT, th.Role.BASE, th.Role.SHAFT})  # what may reach far beyond the machine's body
 
 
 @dataclass(frozen=True)
@@ -43,8 +43,8 @@ class Outlines:
 
     @cached_property
     def middle(self) -> float:
-        """Along the axis, of all but what it stands on (m)."""
-        spans = [part.span for part in self.machine.parts if self.role(part) not in STANDING]
+        """Along the axis, of its body (m)."""
+        spans = [part.span for part in self.machine.parts if self.role(part) not in LONG]
         return (min(a for a, _ in spans) + max(b for _, b in spans)) / 2
 
     def side(self, part: th.Part) -> int:

@@ -2,10 +2,15 @@
 
 from __future__ import annotations
 
+import tomllib
+import unicodedata
+from collections.abc import Mapping
 from dataclasses import dataclass
 from enum import StrEnum
+from pathlib import Path
 
 DECLARED = "declared"
+SHORTEST = 4  # letters of a word that may be looked for inside another
 
 
 class Role(StrEnum):
@@ -64,3 +69,18 @@ class Identity:
 def identity(role: Role | None, turns: bool | None = None) -> Identity:
     """As declared: what turns follows from the role unless it is said."""
     return Identity(role, role.turns if turns is None and role is not None else turns)
+
+
+def words_of(text: str) -> frozenset[str]:
+    """Words, and long ones without their accents too, as controllers and CAN tools have to write them."""
+    words = text.split()
+    return frozenset(words) | {plain(w) for w in words if len(w) > SHORTEST}
+
+
+def plain(word: str) -> str:
+    """Latin letters without what stands over or under them."""
+    return "".join(unicodedata.normalize("NFD", c)[0] if "À" <= c <= "ſ" else c for c in word)
+
+
+_VOCABULARY = tomllib.loads(Path(__file__).with_name("role_words.toml").read_text("utf-8"))
+ROLE_WORDS: Mapping[Role, frozenset[str]] = {Role[name]: words_of(text) for name, text in _VOCABULARY.items()}

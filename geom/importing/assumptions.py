@@ -140,10 +140,17 @@ def end_windings(
     return turn
 
 
-def frame(draft: Draft, stack_m: float, ends_m: float, outer_m: float, shaft_m: float) -> None:
-    """End-caps and bearings.  ends_m : what stands out from the stack, at either end"""
+def frame(draft: Draft) -> None:
+    """End-caps and bearings, in proportion to what was entered."""
+
+    def size(group: str, key: str) -> float:
+        return 1e-3 * (draft.value(f"geometry.{group}", f"{key}_mm") or 0.0)
+
+    stack = max(size("stator", "stack_length"), size("rotor", "stack_length"))
+    ends = max(size("winding", "straight") + size("winding", "end"), size("rotor", "end"))
+    outer_m, shaft_m = size("stator", "outer_diameter"), size("shaft", "diameter")
     cap = max(0.06 * outer_m, 2e-3)
-    length = max(stack_m + 2 * (1.15 * ends_m + cap + 1e-3), 0.05)
+    length = max(stack + 2 * (1.15 * ends + cap + 1e-3), 0.05)
     seat = min(1.8 * shaft_m, (shaft_m + outer_m) / 2)
     draft.assume(
         "geometry.frame", "room for the end turns", length_mm=round(1e3 * length, 4), cap_mm=round(1e3 * cap, 4)

@@ -502,7 +502,4 @@ def _frame(draft: Draft, document: Node, stator: Lamination, family_template: st
         if abs(inner - stator.outer) > 1e-5:
             words = f"contradicts stator.Rext = {stator.outer:g} m, which the housing encloses here"
             draft.leave("frame.Rint", inner, words)
-    ends = sum(draft.value("geometry.winding", key) for key in ("straight_mm", "end_mm"))
-    ends = max(ends, draft.value("geometry.rotor", "end_mm") or 0.0) * 1e-3
-    stack = max(stator.length, (draft.value("geometry.rotor", "stack_length_mm") or 0.0) * 1e-3)
-    assumptions.frame(draft, stack, ends, 2 * stator.outer, 1e-3 * draft.value("geometry.shaft", "diameter_mm"))
+    assumptions.frame(draft)

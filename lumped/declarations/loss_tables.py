@@ -148,9 +148,8 @@ def _map(table: Table) -> Law:
         raise table.error("the map is not a grid", "at_speed and at_torque rising, P_W = [[per torque], per speed]")
     if len(watts) != len(speed):
         raise table.error(f"P_W has {len(watts)} rows", f"one per speed: {len(speed)}")
-    return MapLoss(
-        speed, torque, watts, table.word("speed", "speed_rpm"), table.word("torque", "torque_Nm"), _temperature(table)
-    )
+    inputs = table.word("speed", "speed_rpm"), table.word("torque", "torque_Nm")
+    return MapLoss(speed, torque, watts, *inputs, _temperature(table), powers(table))
 
 
 LOSSES = {"copper": _copper, "iron": _iron, "brush": _brush, "ripple": _ripple, "inverter": _inverter}

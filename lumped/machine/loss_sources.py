@@ -36,6 +36,11 @@ def checked_losses(machine: Machine) -> None:
     _declared(machine)
 
 
+def loss_inputs(machine: Machine) -> set[str]:
+    """Names of the inputs that losses read."""
+    return {name for *_, law, _ in _declared(machine) for name in law.reads}
+
+
 def loss_shares(machine: Machine, network: Network) -> dict[str, dict[str, float]]:
     """Source -> share of its watts per part, zone or fluid of the network."""
     out: dict[str, dict[str, float]] = {}

@@ -34,7 +34,7 @@ from lumped.machine.bases import switched
 from lumped.machine.films import Surroundings, face_films, nominal, surroundings
 from lumped.machine.hairpin import insulation
 from lumped.machine.jackets import FLOW, INLET, coolant_streams, outlet_film, outlets
-from lumped.machine.loss_sources import sources
+from lumped.machine.loss_sources import loss_inputs, sources
 from lumped.machine.parameters import parameters
 from lumped.machine.part_identities import declared, with_channels
 from lumped.machine.path import cells_of, stem
@@ -101,9 +101,10 @@ def boundaries(machine: Machine) -> tuple[str, ...]:
 
 
 def operating_point(machine: Machine) -> dict[str, np.ndarray]:
-    """The rated point as inputs of the laws; a rating that the file does not give is 0."""
+    """The rated point as inputs of the laws: current and speed, 0 where not rated, and what losses read beside them."""
     around, ratings = surroundings(machine, ()), machine.sections.get("ratings", {})
     values = {name: ratings.get(name, 0.0) for name in ("current_A", "speed_rpm")}
+    values |= {name: ratings[name] for name in loss_inputs(machine) & ratings.keys()}
     if around.fan is not None:
         values["fan_flow_m3h"] = around.fan.flow_m3_h
     if around.cooling is not None:

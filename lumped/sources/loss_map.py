@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from geom.arrays import Ints
+from lumped.sources.loss_laws import Power, product
 from lumped.transfer.laws import CONSTANT, Array, Inputs, Law, TemperatureLaw
 from lumped.transfer.ranges import out_of_range
 
@@ -15,7 +16,8 @@ from lumped.transfer.ranges import out_of_range
 class MapLoss(Law):
     """A measured or computed map (W) over |speed| and |torque|, bilinear; warns outside and takes the nearest edge.
 
-    at_speed (ns,) and at_torque (nt,) rise; watts (ns, nt), row by row; speed, torque: names of the inputs.
+    at_speed (ns,) and at_torque (nt,) rise; watts (ns, nt), row by row; speed, torque: names of the inputs, whatever
+    they are. powers : (input, at, exponent) of factors beside it, such as the speed of a map over currents.
     """
 
     at_speed: tuple[float, ...]
@@ -24,10 +26,11 @@ class MapLoss(Law):
     speed: str = "speed_rpm"
     torque: str = "torque_Nm"
     temperature: TemperatureLaw = CONSTANT
+    powers: tuple[Power, ...] = ()
 
     @property
     def reads(self) -> tuple[str, ...]:  # type: ignore[override]
-        return (self.speed, self.torque)
+        return (self.speed, self.torque, *(name for name, _, _ in self.powers))
 
     def factor(self, inputs: Inputs) -> Array:
         n = self._within(self.speed, inputs, self.at_speed)
@@ -36,7 +39,7 @@ class MapLoss(Law):
         j, b = _cell(T, self.at_torque)
         P = np.asarray(self.watts)
         low, high = (1 - b) * P[i, j] + b * P[i, j + 1], (1 - b) * P[i + 1, j] + b * P[i + 1, j + 1]
-        return (1 - a) * low + a * high
+        return ((1 - a) * low + a * high) * product(inputs, self.powers)
 
     def _within(self, name: str, inputs: Inputs, at: tuple[float, ...]) -> Array:
         x = np.abs(np.asarray(inputs[name], float))

@@ -4,34 +4,19 @@ from __future__ import annotations
 
 import re
 import tomllib
-import unicodedata
 from collections.abc import Mapping
 from pathlib import Path
 
-from geom.description.roles import Role
+from geom.description.roles import ROLE_WORDS, SHORTEST, Role, words_of
 
 WORD = re.compile(r"[A-ZÀ-ÖØ-Þ]?[a-zß-öø-ſ]+|[A-ZÀ-ÖØ-Þ]+(?![a-zß-öø-ÿ])|\d+|[^\W\d_A-Za-zªµºÀ-ſ]+")
 
-SHORTEST = 4  # letters of a word that may be looked for inside another
 IDEOGRAPHS = "\u3040"  # from here on a sign is a word
 
 VOCABULARY = tomllib.loads(Path(__file__).with_name("vocabulary.toml").read_text("utf-8"))
-
-
-def _words(text: str) -> frozenset[str]:
-    """Words, and long ones without their accents too, as controllers and CAN tools have to write them."""
-    words = text.split()
-    return frozenset(words) | {plain(w) for w in words if len(w) > SHORTEST}
-
-
-def plain(word: str) -> str:
-    """Latin letters without what stands over or under them."""
-    return "".join(unicodedata.normalize("NFD", c)[0] if "À" <= c <= "ſ" else c for c in word)
-
-
-QUANTITY: Mapping[str, frozenset[str]] = {name: _words(text) for name, text in VOCABULARY["quantities"].items()}
-ROLES: Mapping[Role, frozenset[str]] = {Role[name]: _words(text) for name, text in VOCABULARY["roles"].items()}
-WORDS = {name: _words(text) for name, text in VOCABULARY["words"].items()}
+QUANTITY: Mapping[str, frozenset[str]] = {name: words_of(text) for name, text in VOCABULARY["quantities"].items()}
+ROLES = ROLE_WORDS
+WORDS = {name: words_of(text) for name, text in VOCABULARY["words"].items()}
 SETPOINT, READ, MODELLED, INLET, NOTHING = (WORDS[n] for n in ("setpoint", "read", "modelled", "inlet", "nothing"))
 DIFFERENCE, CLOCKS, LOSS, OUTER, CHANNELS = (WORDS[n] for n in ("difference", "clock", "loss", "outer", "channels"))
 EXTREME, SPREAD, MEAN, INSTRUMENT, MACHINE = (WORDS[n] for n in ("extreme", "spread", "mean", "instrument", "machine"))

@@ -17,7 +17,7 @@ from typing import Any, cast
 from geom.errors import InputError
 from measured.headers.cells import in_thousands, is_date, is_reading, number
 from measured.headers.rows import SAMPLE, Layout, layout, transposed
-from measured.headers.words import CLOCKS, IDEOGRAPHS, VOCABULARY
+from measured.headers.words import CLOCKS, IDEOGRAPHS, QUANTITY, ROLES
 from measured.recordings.csv_file import BLOCK, Body, chunks, shared
 from measured.recordings.data_table import PIECE
 
@@ -29,7 +29,7 @@ BOMS = {b"\xff\xfe": "utf-16", b"\xfe\xff": "utf-16", b"\xef\xbb\xbf": "utf-8-si
 # Code pages of loggers; which one it is, is told by the letters that it gives: those that headers have.
 PAGES = ("cp1252", "cp850", "mac_roman", "cp932", "gb18030", "cp1250", "cp1251", "cp949", "cp1254")
 RUSSIAN = re.compile("[А-яё]{4,}")
-_TERMS = [w for kind in ("quantities", "roles") for words in VOCABULARY[kind].values() for w in words.split()]
+_TERMS = [word for terms in (*QUANTITY.values(), *ROLES.values()) for word in terms]
 _LONG = {w for w in (*_TERMS, *CLOCKS) if not w.isascii() and len(w) > (1 if w[0] >= IDEOGRAPHS else 3)}
 WORDS = re.compile("|".join(sorted(_LONG, key=len, reverse=True)), re.IGNORECASE)  # of headers, in letters of a page
 LETTERS = re.compile(

@@ -289,8 +289,8 @@ def _parquet(file: Path) -> Contents:
     return [(index.get(n, n), c) for n, c in columns if n in index or not UNNAMED.fullmatch(n)], {}
 
 
-def _mat(file: Path) -> Contents:
-    """Vectors of a MATLAB file, alone or in structs, and columns of its matrices; those of the commonest length."""
+def matlab_variables(file: Path) -> dict[str, Any]:
+    """All that a MATLAB file holds, by name; InputError for a version or a size that is not read."""
     from scipy.io import loadmat
 
     start = file.open("rb").read(128)
@@ -298,7 +298,12 @@ def _mat(file: Path) -> Contents:
         raise InputError("is a MATLAB file of version 7.3", str(file), "save(..., '-v7'), or the table saved as CSV")
     if start.startswith(b"MATLAB 5.0"):  # older ones are not packed
         BYTES.check(sum(timed(_unpacked(file, "<II" if start.endswith(b"IM") else ">II"), file)), file, "holds")
-    paths = dict(_vectors(loadmat(file, simplify_cells=True)))
+    return dict(loadmat(file, simplify_cells=True))
+
+
+def _mat(file: Path) -> Contents:
+    """Vectors of a MATLAB file, alone or in structs, and columns of its matrices; those of the commonest length."""
+    paths = dict(_vectors(matlab_variables(file)))
     sizes = Counter(len(v) for v in paths.values() if len(v) > 2)
     if not sizes:
         right = "columns of numbers; the table saved as CSV"

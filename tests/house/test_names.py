@@ -70,6 +70,7 @@ ALLOWED = {  # file -> what its strings are, none of them a user's name for a pa
     "extras/rating/design/machine_keys.py": "keys of a machine file, geometry.GROUP.NAME",
     "extras/workbench/access_control.py": "hosts of requests",
     "geom/importing/motor_cad.py": "keys and words of a .mot file",
+    "thermoscope/commands/model/import_losses.py": "loss zones of a machine file, PART.ZONE",
     "geom/importing/pyleecan.py": "classes of pyleecan's files",
 }
 

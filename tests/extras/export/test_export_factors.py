@@ -2,6 +2,7 @@
 
 import importlib
 import pkgutil
+from dataclasses import replace
 from inspect import isabstract
 
 import numpy as np
@@ -45,6 +46,7 @@ def value(total, inputs):
 
 COPPER = EddyLoss(CopperLoss(0.01, ("id_A", "iq_A"), 1.5), (1.1, 0.02, 0.4), "speed_rpm", 4000.0)
 MAP = MapLoss((0.0, 1000.0, 3000.0), (0.0, 50.0), ((0.0, 1.0), (5.0, 9.0), (20.0, 60.0)), torque="iq_A")
+FOLLOWING = replace(MAP, powers=(("flow_l_min", 4.0, 1.5),))
 COUNTER = Exchanger(300.0, Flow(60.0, "flow_l_min"), Flow(0.2, "speed_rpm"))
 STREAM = streamed("flow_l_min", 4.0, lambda v, fluid: duct_film(v, 0.01, 1.0, fluid), water, 40.0, True, 0.1)
 EXACT = [
@@ -52,6 +54,7 @@ EXACT = [
     InputPower(2.0, (("speed_rpm", 1000.0, 0.8), ("flow_l_min", 4.0, 0.5))),
     COPPER,
     MAP,
+    FOLLOWING,
     CopperLoss(0.01, ("id_A",)),
     by_dowell(CopperLoss(0.01, ("id_A", "iq_A"), 1.5), "speed_rpm", 4, 3e-3, 0.8, 5),
     PowerLoss(((2.0, (("speed_rpm", 1000.0, 1.0),)), (3.0, (("id_A", 50.0, 2.0),)))),

@@ -13,6 +13,7 @@ from extras.portraits.portrait import CAPTION, portrait
 from extras.portraits.shape import joined
 from geom import load_machine
 from geom.description.roles import Role
+from geom.machine_file import machine_from
 from viz.rendering.cut import QUARTER
 from viz.rendering.nodes import SplitMesh
 
@@ -44,6 +45,14 @@ def test_every_meshed_part_is_shown_where_it_is(machine, bodies):
         slanted = 0.1 * (part.span[1] - part.span[0]) if rounder else 1e-6
         assert part.span[0] - slanted <= z.min()
         assert z.max() <= part.span[1] + slanted
+
+
+def test_a_long_shaft_moves_no_end_winding():
+    """Its ends are left and right of the body's middle, not of the shaft's."""
+    like = {"machine": {"name": "long", "like": "pmsm-m1"}, "geometry": {"shaft": {"extension_mm": 400.0}}}
+    machine = machine_from(like)
+    (right,) = (b.shape for b in dressed(machine) if b.part == "winding.right")
+    assert right.points[:, 2].max() <= machine.part("winding.right").span[1] + 1e-3
 
 
 def test_something_is_added_to_every_machine(bodies):

@@ -32,7 +32,7 @@ def test_nothing_is_written_of_what_cannot_be_built(tmp_path):
     with pytest.raises(InputError, match="no template"):
         import_(saved(tmp_path, pyleecan()), out, "barrel")
     with pytest.raises(InputError, match="one of: "):
-        import_(saved(tmp_path, "x", "machine.dxf"), out)
+        import_(saved(tmp_path, "x", "machine.dwg"), out)
     assert not out.exists()
 
 

@@ -189,6 +189,11 @@ LIMITS = {
     MapLoss: [
         (MapLoss((0.0, 10.0), (0.0, 1.0), ((1.0, 2.0), (3.0, 5.0))), {"speed_rpm": 10.0, "torque_Nm": -1.0}, 5.0),
         (MapLoss((0.0, 10.0), (0.0, 1.0), ((1.0, 2.0), (3.0, 5.0))), {"speed_rpm": 0.0, "torque_Nm": 0.0}, 1.0),
+        (  # of currents, at twice its speed
+            MapLoss((0.0, 1.0), (0.0, 1.0), ((1.0, 2.0), (3.0, 5.0)), "id_A", "iq_A", powers=(("n", 5.0, 2.0),)),
+            {"id_A": -1.0, "iq_A": 1.0, "n": 10.0},
+            20.0,
+        ),
     ],
     CopperLoss: [(CopperLoss(0.02, ("I",)), {"I": 0.0}, 0.0), (CopperLoss(0.02, ("I",), 3.0), {"I": -10.0}, 6.0)],
     EddyLoss: [  # none at rest, the copper's once more where the resistance has doubled

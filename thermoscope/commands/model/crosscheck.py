@@ -25,6 +25,7 @@ if TYPE_CHECKING:
     from thermoscope.console.terminal import Progress
 
 HOT = 200.0  # degC, what insulation bears
+LOADS = {"torque_Nm": "N m", "iq_A": "A", "id_A": "A", "current_A": "A"}  # of a machine: the first it has
 MOST_ROWS = 12  # rows of a long table on the screen; the files hold all
 
 
@@ -77,7 +78,7 @@ def checked(built: Built, size: NetworkSize | None, tell: Progress) -> dict[str,
 
 
 def bearable(built: Built) -> tuple[dict[str, float], Array]:
-    """The rated point with its current lowered until the machine settles, and where its network does (degC): a
+    """The rated point with its load lowered until the machine settles, and where its network does (degC): a
     short-time rating has no steady state. The small network looks first, in a hundredth of the time.
 
     That it does not settle is one note; what its films leave on the way there says nothing more.
@@ -86,16 +87,18 @@ def bearable(built: Built) -> tuple[dict[str, float], Array]:
     """
     from lumped.machine.motor import rated_inputs
 
-    point = rated_inputs(built.machine)
-    rated = point["current_A"]
-    small = built.small or built.network
+    rated = point = rated_inputs(built.machine)
+    load, unit = next((name, unit) for name, unit in LOADS.items() if name in rated)
+    small, share = built.small or built.network, 1.0
     while (z := _rest(small, point)) is None or (z := _rest(built.network, point)) is None:
-        point = {**point, "current_A": 0.8 * point["current_A"]}
-        if point["current_A"] <= 0.01 * rated:
+        share *= 0.8
+        point = {name: share * value if name in LOADS else value for name, value in rated.items()}
+        if share <= 0.01:
             never = f"'{built.machine.name}' does not settle below {HOT:g} degC, even with next to no current"
             raise ThermoscopeError(never)
-    if point["current_A"] != rated:
-        notes([f"at {rated:g} A it does not settle below {HOT:g} degC: checked at {point['current_A']:.4g} A"])
+    if share < 1.0:
+        fault = f"at {rated[load]:g} {unit} it does not settle below {HOT:g} degC"
+        notes([f"{fault}: checked at {point[load]:.4g} {unit}"])
     return point, z
 
 

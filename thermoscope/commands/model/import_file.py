@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import tomllib
+from collections.abc import Mapping
 from pathlib import Path
 from shlex import quote
 from typing import Annotated, Any
@@ -16,20 +18,49 @@ from thermoscope.console.options import Json, Out
 from thermoscope.console.summary import Summary
 from thermoscope.console.terminal import give
 
-File = Annotated[Path, typer.Argument(metavar="FILE", help="Of Motor-CAD (.mot) or pyleecan (.json).")]
+File = Annotated[
+    Path,
+    typer.Argument(metavar="FILE", help="Of Motor-CAD (.mot), of pyleecan (.json), a drawing (.dxf), or a loss map."),
+]
 Template = Annotated[
     str, typer.Option(metavar="NAME", help=f"Frame and cooling, where the file has none: {', '.join(TEMPLATES)}.")
 ]
+Stack = Annotated[float | None, typer.Option(metavar="MM", help="Length of the stack, which no drawing has.")]
+Units = Annotated[
+    str, typer.Option(metavar="UNIT", help="Where the file has none: mm of a drawing, speed=rad/s,power=kW of a map.")
+]
+OfMachine = Annotated[
+    str | None, typer.Option("--machine", metavar="MACHINE", help="Of a loss map: the machine whose losses it says.")
+]
+Copper = Annotated[
+    float | None, typer.Option("--copper-degc", metavar="DEGC", help="Of a loss map: the winding's temperature in it.")
+]
 
 
-def import_(file: File, out: Out = None, family_template: Template = USUAL_TEMPLATE, target: Json = None) -> int:
+def import_(
+    file: File,
+    out: Out = None,
+    family_template: Template = USUAL_TEMPLATE,
+    stack_mm: Stack = None,
+    units: Units = "",
+    machine: OfMachine = None,
+    copper_degC: Copper = None,
+    target: Json = None,
+) -> int:
     """A machine file of another program as one of ours: what was taken, what is assumed, what was not understood."""
     from geom import import_draft
     from geom.machine_file import machine_from
 
-    draft = import_draft(file, family_template)
-    checked_losses(machine_from(draft.sections(), str(file)))  # nothing is written that cannot be built
-    target_file = write_machine_file(draft.name, draft.toml(), out or Path())
+    if machine is not None:
+        from thermoscope.commands.model.import_losses import losses_draft
+
+        draft, text = losses_draft(file, Path(machine), units, copper_degC)
+        sections: Mapping[str, Any] = tomllib.loads(text)
+    else:
+        draft = import_draft(file, family_template, stack_mm, units)
+        text, sections = draft.toml(), draft.sections()
+    checked_losses(machine_from(sections, str(file)))  # nothing is written that cannot be built
+    target_file = write_machine_file(draft.name, text, out or Path())
     document = {
         "machine": draft.name,
         "program": draft.program,
