@@ -21,7 +21,7 @@ from lumped.build.mesh_choice import (
     STRAIGHT,
 )
 from lumped.build.network_size import CONDENSED, FIRST_AXIAL, accurate_network
-from lumped.build.pipeline import CASE, FEW, LITTLE
+from lumped.build.pipeline import CASE, FEW
 from scripts.published import FRONT, HUST, ROOT, between, demo_table, demo_time
 from thermoscope.console.options import ACCURACY
 
@@ -125,6 +125,10 @@ def test_the_page_says_how_shapes_are_learned():
     words = " ".join(CONDENSATION.split())
     assert f"films between x{low:g} and x{high:g}" in words
     assert f"All contacts x{CASE.joined_contacts[0]:g} and x{CASE.joined_contacts[1]:g} are learned" in words
+    assert (
+        f"each contact in turn x{CASE.opposed_contacts:g}, its others and its films x{1 / CASE.opposed_contacts:g}"
+        in words
+    )
     assert f"more than {CASE.tolerance:g} of a snapshot" in words
     assert f"less than {100 * LITTLE:g} %" in words
     assert (CASE.random_points, CASE.favour, CASE.thin) == (6, 3.0, 6.0), "six sets, three times, six times"
@@ -206,6 +210,7 @@ def test_where_a_cases_network_misses_the_page_says_so():
     }
     said = re.findall(r"`(\S+)` misses the 5 % at its `(\S+)` \(([^)]+)\)", " ".join(CONDENSATION.split()))
     assert missed == {(machine, changed, part) for machine, part, changed in said}
+    assert ("All are within 2 / 5." in CONDENSATION) == (not missed)
 
 
 def test_the_small_network_is_compared_at_the_same_points():
