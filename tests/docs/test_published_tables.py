@@ -6,6 +6,7 @@ from inspect import signature
 import pytest
 
 from fem.matrices.winding import homogenised
+from fem.solvers.snapshots import LITTLE
 from geom import library, load_machine
 from geom.description.materials import winding_conductivity
 from lumped.build.mesh_choice import (
