@@ -40,7 +40,7 @@ class Recipe:
     opposed_contacts : factor that each contact of a part of little volume has in turn at such points, the part's other
         contacts and its films the inverse; 1: no such points. What lies thin between two others is as warm as either
     favour : weight on the root of energy of parts that losses heat, since their hot spots are what is asked for
-    thin : the same weight for parts of little volume that nothing heats; by energy alone they have too few shapes
+    thin : the same weight for parts of little volume, heated or not; by energy alone they have too few shapes
     max_states : largest number of mean nodes and shapes together; parts compete for shapes by energy; 0: the means
         alone, for which nothing is solved
     """

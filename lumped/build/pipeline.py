@@ -192,7 +192,7 @@ def networks_of(machine: Machine, reduction: Reduction, recipe: Recipe) -> tuple
     """The network of a recipe, and the small one for many runs."""
     favour = dict.fromkeys(means_network(machine, reduction).heated, recipe.favour)
     thin = dict.fromkeys(little_parts(reduction.field), recipe.thin)
-    large = reduction.network(recipe.tolerance, recipe.max_states, {**thin, **favour})
+    large = reduction.network(recipe.tolerance, recipe.max_states, {**favour, **thin})
     small = reduction.network(recipe.tolerance, FEW, favour)
     return motor_network(machine, large), motor_network(machine, small)
 
