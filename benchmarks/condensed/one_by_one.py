@@ -3,7 +3,8 @@
     python benchmarks/condensed/one_by_one.py [MACHINE ...] [--json FILE [--page]]
 
 Every film x0.3 and x10 and every contact x0.2 and x5, each alone; then twelve draws of all of them between x0.2 and
-x5. Steady, at rated losses: the hottest point of the part that is furthest off, as in case_network.py.
+x5, and twelve where each stands as it is or at an end. Steady, at rated losses: the hottest point of the part that is
+furthest off, as in case_network.py.
 """
 
 from __future__ import annotations
@@ -13,13 +14,15 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from typing import Any
 
+import numpy as np
 from case_network import KINDS, PAGE, errors, fields, networks_on
 
 from lumped.build.fixed_coefficients import FixedCoefficients
 from scripts.published import machine_arguments, publish, write_rows
 
-HEAD = ("machine", "states", "changed", "points", "heated (%)", "other (%)", "other is", "where")
+HEAD = ("machine", "states", "changed", "points", "heated (%)", "that is", "where", "other (%)", "that is", "where")
 DRAWS = range(100, 112)  # seeds
+ENDS = {"films": (0.3, 1.0, 10.0), "contacts": (0.2, 1.0, 5.0)}
 
 
 def groups(nominal: FixedCoefficients) -> dict[str, dict[str, FixedCoefficients]]:
@@ -27,7 +30,18 @@ def groups(nominal: FixedCoefficients) -> dict[str, dict[str, FixedCoefficients]
     h, g = nominal.films, nominal.contacts
     alone = {f"{k} x{f:g}": replace(nominal, films={**h, k: f * h[k]}) for k in h for f in (0.3, 10.0)}
     alone |= {f"{k} x{f:g}": replace(nominal, contacts={**g, k: f * g[k]}) for k in g for f in (0.2, 5.0)}
-    return {"one film or contact": alone, "all, drawn": {f"draw {k - 99}": nominal.moved(5.0, k) for k in DRAWS}}
+    return {
+        "one film or contact": alone,
+        "all, drawn": {f"draw {k - 99}": nominal.moved(5.0, k) for k in DRAWS},
+        "all, ends drawn": {f"draw {k - 99}": at_ends(nominal, k) for k in DRAWS},
+    }
+
+
+def at_ends(nominal: FixedCoefficients, seed: int) -> FixedCoefficients:
+    """Every film and contact as it is or at an end of its range."""
+    rng = np.random.default_rng(seed)
+    h, g = ({k: v * float(rng.choice(ENDS[of])) for k, v in getattr(nominal, of).items()} for of in ENDS)
+    return replace(nominal, films=h, contacts=g)
 
 
 def rows(machine: str) -> Iterator[dict[str, Any]]:
@@ -46,8 +60,8 @@ def table(found: Sequence[Mapping[str, Any]]) -> str:
     lines = [f"| {' | '.join(HEAD)} |", f"|{'---|' * len(HEAD)}"]
     for heated, other in zip(found[::2], found[1::2], strict=True):
         head = f"{other['machine']} | {other['states']} | {other['case']} | {other['points']}"
-        where = str(other["at"]).replace("|", " on ")
-        lines.append(f"| {head} | {heated['ours']:.1f} | {other['ours']:.1f} | {other['part']} | {where} |")
+        each = (f"{r['ours']:.1f} | {r['part']} | {str(r['at']).replace('|', ' on ')}" for r in (heated, other))
+        lines.append(f"| {head} | {' | '.join(each)} |")
     return "\n".join(lines)
 
 

@@ -20,6 +20,7 @@ from fem.solvers.two_processes import in_two_processes
 from geom.arrays import Array as Floats
 
 SHIFTS = (1 / 3, 1 / 20, 1 / 120, 1 / 700)  # 1/s
+LITTLE = 0.02  # of the machine's volume: of such a part the hot spot is one of little energy
 CHUNK = 128  # fields that a matrix is multiplied with at a time, so that memory stays small
 
 
@@ -36,8 +37,10 @@ class Recipe:
     local_points : further points at which each part is solved for alone, between neighbours in `local_states` states
     joined_contacts : factors on all contacts at once, at which losses are solved, steady and at the shifts: corners of
         the range that random points do not reach
+    opposed_contacts : factor that each contact of a part of little volume has in turn at such points, the part's other
+        contacts and its films the inverse; 1: no such points. What lies thin between two others is as warm as either
     favour : weight on the root of energy of parts that losses heat, since their hot spots are what is asked for
-    thin : the same weight for parts of little volume that nothing heats; by energy alone they have too few shapes
+    thin : the same weight for parts of little volume, heated or not; by energy alone they have too few shapes
     max_states : largest number of mean nodes and shapes together; parts compete for shapes by energy; 0: the means
         alone, for which nothing is solved
     """
@@ -54,6 +57,7 @@ class Recipe:
     max_states: int | None = None
     film_factors: tuple[float, float] | None = None
     joined_contacts: tuple[float, ...] = ()
+    opposed_contacts: float = 1.0
     favour: float = 1.0
     thin: float = 1.0
 
@@ -111,6 +115,8 @@ def snapshots(
     for factor in recipe.joined_contacts:
         larger = {name: factor * g for name, g in contacts.items()}
         points += [(films, larger, shift, loads) for shift in (0.0, *recipe.shifts)]
+    if recipe.opposed_contacts != 1.0:
+        points += [(h, g, 0.0, loads) for h, g in opposed_points(field, films, contacts, recipe.opposed_contacts)]
 
     def solved(factor: Factorise, point: tuple[Mapping[str, float], Mapping[str, float], float, Floats]) -> Floats:
         h, g, shift, heat = point
@@ -125,6 +131,36 @@ def snapshots(
 def random_coefficients(coefficients: Mapping[str, float], spread: float, rng: np.random.Generator) -> dict[str, float]:
     """Every coefficient times spread ** U(-1, 1)."""
     return {name: value * spread ** rng.uniform(-1, 1) for name, value in coefficients.items()}
+
+
+def little_parts(field: FieldModel) -> tuple[str, ...]:
+    """Parts whose hot spots are ones of little energy."""
+    least = LITTLE * sum(block.volume for block in field.blocks.values())
+    return tuple(name for name, block in field.blocks.items() if block.volume < least)
+
+
+def opposed_points(
+    field: FieldModel, films: Mapping[str, float], contacts: Mapping[str, float], factor: float
+) -> list[tuple[dict[str, float], dict[str, float]]]:
+    """Films and contacts (W/m2/K) where every part of little volume is as warm as one of its neighbours.
+
+    At the k-th point its k-th contact is `factor` times as large, its other contacts and its films 1 / `factor` times;
+    parts with fewer contacts begin again, parts with one stay as they are.
+    """
+    sides = {
+        part: [key for key, touch in field.contacts.items() if part in (touch.a.part, touch.b.part)]
+        for part in little_parts(field)
+    }
+    sides = {part: keys for part, keys in sides.items() if len(keys) > 1}
+    out = []
+    for k in range(max(map(len, sides.values()), default=0)):
+        h, g = dict(films), dict(contacts)
+        for part, keys in sides.items():
+            near = keys[k % len(keys)]
+            g |= {key: contacts[key] * (factor if key == near else 1.0 / factor) for key in keys}
+            h |= {face: films[face] / factor for face, film in field.films.items() if film.trace.part == part}
+        out.append((h, g))
+    return out
 
 
 def _dipoles(field: FieldModel) -> list[Floats]:

@@ -11,6 +11,7 @@ from fem.matrices.assembly import FieldModel, HasTensor, assemble
 from fem.matrices.bends import Bends
 from fem.matrices.material import Conductivity, LoopWound
 from fem.matrices.winding import homogenised
+from fem.solvers.snapshots import little_parts
 from fem.solvers.streams import cut
 from geom import Machine, NamedMesh, build_mesh
 from geom.description.materials import Material
@@ -28,9 +29,14 @@ Progress = Callable[[str], None]
 ACROSS = 1  # elements over a compact face: windings are quadratic, so their hot spots are within 0.5 % with one
 AXIAL = 0.75  # thickest layer over the size of a triangle: 45 mm, a stack of 140 mm in four layers
 CASE = Recipe(  # hot spots within 2 % over the range of films and contacts: docs/condensation.md
-    tolerance=0.16, random_points=6, film_factors=(0.3, 10.0), joined_contacts=(2.2, 5.0), favour=3.0, thin=6.0
+    tolerance=0.16,
+    random_points=6,
+    film_factors=(0.3, 10.0),
+    joined_contacts=(2.2, 5.0),
+    opposed_contacts=5.0,
+    favour=3.0,
+    thin=6.0,
 )
-LITTLE = 0.02  # of the machine's volume: of such a part the hot spot is one of little energy
 FEW = 100  # means and shapes of the network that a diagnosis runs: its effects are within 1 % (median) of the larger's
 
 
@@ -185,9 +191,8 @@ def build(
 def networks_of(machine: Machine, reduction: Reduction, recipe: Recipe) -> tuple[Network, Network]:
     """The network of a recipe, and the small one for many runs."""
     favour = dict.fromkeys(means_network(machine, reduction).heated, recipe.favour)
-    volumes = {part: block.volume for part, block in reduction.field.blocks.items()}
-    thin = {part: recipe.thin for part, volume in volumes.items() if volume < LITTLE * sum(volumes.values())}
-    large = reduction.network(recipe.tolerance, recipe.max_states, {**thin, **favour})
+    thin = dict.fromkeys(little_parts(reduction.field), recipe.thin)
+    large = reduction.network(recipe.tolerance, recipe.max_states, {**favour, **thin})
     small = reduction.network(recipe.tolerance, FEW, favour)
     return motor_network(machine, large), motor_network(machine, small)
 

@@ -253,6 +253,18 @@ def test_faster_than_expected_is_the_correlation_and_beyond_its_range_warns():
         simulate(network, Record(np.arange(3.0), {"v": 5000.0}, {"ambient": 20.0}))
 
 
+@pytest.mark.parametrize(("rise", "said"), [(70.0, 0), (150.0, 1)])
+def test_horizontal_fins_wider_than_their_correlation_knows_are_said(rise, said):
+    """Jones and Smith's Rayleigh number ends at 6e5: fins 60 mm apart reach it 76 K above air of 95 degC."""
+    data = document("natural", {"surface": "horizontal fins", "spacing_mm": 60.0})
+    air_degC = 95.0 - 0.5 * rise
+    with warnings.catch_warnings(record=True) as caught:
+        warnings.simplefilter("always", RangeWarning)
+        simulate(read_network(data), Record(np.array([0.0, 1e-3]), {}, {"ambient": air_degC}, air_degC + rise))
+    words = [str(w.message) for w in caught]
+    assert [bool(re.search(r"jones_smith: 150 K .* outside 0 to 7\d\.\d+", x)) for x in words] == [True] * said
+
+
 @pytest.mark.parametrize(("rpm", "said"), [((0.0, 3000.0), []), ((0.0, 3000.0, 20.0, 20.0), ["n = 20 at 2"])])
 def test_slower_than_its_correlation_knows_is_said_but_not_rest(rpm, said):
     """A shaft of 60 mm in air of 50 degC has a Reynolds number of 1e3 at 95 rpm; whoever passes it is not meant."""
