@@ -56,6 +56,12 @@ def import_draft(
     return IMPORTERS[suffix](path, family_template)
 
 
+def is_foreign_machine(path: Path) -> bool:
+    """Is it a machine file of another program?  JSON is one of pyleecan where it names a class; else a recording."""
+    suffix = path.suffix.lower()
+    return suffix in IMPORTERS and (suffix != ".json" or b'"__class__"' in path.read_bytes())
+
+
 def library() -> dict[str, Path]:
     """The machines that come with the tool, by name."""
     return {path.stem: path for path in sorted(LIBRARY.glob("*.toml"))}

@@ -13,7 +13,11 @@ from geom.description.toml_file import read_toml as read_toml
 from geom.disk_cache import recalled as recalled, store as store
 from geom.errors import NoSolution as NoSolution
 from geom.escapes import c_comment as c_comment, csv_lines as csv_lines, toml_value as toml_value, xml_text as xml_text
-from geom.machine_file import families as families
+from geom.machine_file import (
+    families as families,
+    import_draft as import_draft,
+    is_foreign_machine as is_foreign_machine,
+)
 from geom.limits import DROP_BYTES as DROP_BYTES
 from geom.machine_file import completed as completed, library as library, machine_from as machine_from
 from geom.meshing.areas import PartRow as PartRow, part_table as part_table
@@ -309,6 +313,7 @@ from thermoscope.case_folder.runs import (
 )
 from thermoscope.case_folder.settings import Settings as Settings, read_settings as read_settings
 from thermoscope.case_folder.workbook import tables as tables, write_csvs as write_csvs, write_xlsx as write_xlsx
+from thermoscope.commands.model.import_file import import_summary as import_summary, write_import as write_import
 from thermoscope.commands.model.revise import evidence as evidence, recorded as recorded
 from thermoscope.commands.open_case import (
     PACKAGE as PACKAGE,

@@ -50,6 +50,7 @@ START: dict[str, Any] = {
     "drop": None,
     "dragged": "",
     "made": "",
+    "imported": None,
 }
 
 

@@ -138,7 +138,13 @@ class Session:
                 self.state.report = f"report.html?{time.time_ns()}"
 
     async def take_in(self, files: Sequence[Path]) -> None:
-        """Show what the columns of dropped files are taken for."""
+        """Show what the columns of dropped files are taken for, or the machine in a file of another program."""
+        if len(files) == 1 and th.is_foreign_machine(files[0]):
+            home = self.folder.settings.path.resolve().parent
+            if (document := await self._calculate("Reading the machine", steps.machine, files[0], home)) is not None:
+                with self.state:
+                    self.state.imported, self.state.error = document, ""
+            return
         dropped = await self._calculate(
             "Reading the recordings", steps.recordings, files, self.folder.case.model.network
         )

@@ -89,6 +89,16 @@ def recordings(files: Sequence[Path], network: Network, tell: th.Progress) -> Dr
     return read(files, network, tell)
 
 
+def machine(file: Path, folder: Path, tell: th.Progress) -> dict[str, Any]:
+    """A machine file of another program as one of ours in a folder: what the page says of it."""
+    tell(f"reading {file.name}")
+    draft = th.import_draft(file)
+    summary = th.import_summary(draft, th.write_import(draft, draft.toml(), folder))
+    table = draft.table()
+    rows = [[th.cell(value) for value in row] for row in table.rows]
+    return {"words": f"{summary.sentence} {summary.more}", "columns": [*table.columns], "rows": rows}
+
+
 def new_case(
     dropped: Dropped, settings: th.Settings, network: Network, tell: th.Progress
 ) -> tuple[th.Folder, Appearance]:

@@ -9,12 +9,15 @@ import numpy as np
 import openpyxl
 import pytest
 from aiohttp import ClientSession, CookieJar, FormData
+from foreign_machines import motor_cad
 from small_case import small_case
 from test_serve_access_control import TOKEN, running
 
 from extras.workbench.access_control import AccessControl
 from extras.workbench.dropped import read, write
+from extras.workbench.steps import machine
 from geom.errors import InputError
+from geom.machine_file import is_foreign_machine, load_machine
 from thermoscope.case_folder.folder import load_case
 
 HEAD = "Zeit;I [A];Wind [km/h];Raum;T Wicklung;Kanal 7;Bemerkung"
@@ -220,3 +223,23 @@ def test_what_no_reader_likes_is_one_message_with_its_name(case, tmp_path):
     for name in ("charts.xlsx", "packed.csv.gz", "zero.csv", "bomb.xlsx"):
         with pytest.raises(InputError, match=name):
             read([tmp_path / name], network, lambda message: None)
+
+
+def test_a_machine_file_of_another_program_becomes_one_of_ours(tmp_path):
+    """A motor as Motor-CAD writes it, from text of our own; the page has each value with its source."""
+    file = tmp_path / "small.mot"
+    file.write_text(motor_cad())
+    document = machine(file, tmp_path, lambda message: None)
+    assert load_machine(tmp_path / "small.toml").name == "small"
+    assert "thermoscope model build" in document["words"]
+    kinds = {row[document["columns"].index("kind")] for row in document["rows"]}
+    assert {"taken", "assumed"} <= kinds
+    with pytest.raises(InputError, match="is there already"):
+        machine(file, tmp_path, lambda message: None)
+
+
+def test_json_is_a_machine_where_it_names_a_class(tmp_path):
+    for text, so in (('{"__class__": "MachineIPMSM"}', True), ('[{"time_s": 0, "T": 20}]', False)):
+        (tmp_path / "a.json").write_text(text)
+        assert is_foreign_machine(tmp_path / "a.json") is so
+    assert not is_foreign_machine(tmp_path / "a.csv")

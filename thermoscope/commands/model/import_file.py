@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import tomllib
-from collections.abc import Mapping
 from pathlib import Path
 from shlex import quote
 from typing import Annotated, Any
@@ -49,18 +48,15 @@ def import_(
 ) -> int:
     """A machine file of another program as one of ours: what was taken, what is assumed, what was not understood."""
     from geom import import_draft
-    from geom.machine_file import machine_from
 
     if machine is not None:
         from thermoscope.commands.model.import_losses import losses_draft
 
         draft, text = losses_draft(file, Path(machine), units, copper_degC)
-        sections: Mapping[str, Any] = tomllib.loads(text)
     else:
         draft = import_draft(file, family_template, stack_mm, units)
-        text, sections = draft.toml(), draft.sections()
-    checked_losses(machine_from(sections, str(file)))  # nothing is written that cannot be built
-    target_file = write_machine_file(draft.name, text, out or Path())
+        text = draft.toml()
+    target_file = write_import(draft, text, out or Path())
     document = {
         "machine": draft.name,
         "program": draft.program,
@@ -70,6 +66,14 @@ def import_(
     }
     give(document, target, lambda: import_summary(draft, target_file))
     return 0
+
+
+def write_import(draft: Draft, text: str, folder: Path) -> Path:
+    """The machine file in a folder. InputError where it cannot be built, or one of its name lies there."""
+    from geom.machine_file import machine_from
+
+    checked_losses(machine_from(tomllib.loads(text), str(draft.path)))
+    return write_machine_file(draft.name, text, folder)
 
 
 def import_summary(draft: Draft, target_file: Path) -> Summary:
