@@ -133,6 +133,11 @@ def is_setpoint(name: str) -> bool:
     return bool(DESIRED.search(name)) or is_spoken(re.sub(r"(?i)\b[s]p ?\d+", " ", name), SETPOINT)
 
 
+def is_stage(name: str) -> bool:
+    """Does one of its words end on one for a stage, as compounds do?"""
+    return any(_end(word, STAGE) == len(word) for word in tokens(name))
+
+
 def is_rise(header: str) -> bool:
     """Is it a difference of temperatures?"""
     return "Δ" in header or bool(DIFFERENCE & {*tokens(header), *re.findall("[a-z]+", header.lower())})

@@ -32,13 +32,13 @@ from measured.headers.words import (
     SETPOINT,
     SPARE,
     SPREAD,
-    STAGE,
     SUPPLY,
     axis_of,
     is_outer,
     is_rise,
     is_setpoint,
     is_spoken,
+    is_stage,
     is_stator,
     quantities_of,
     roles_of,
@@ -289,8 +289,7 @@ def _read(source: Source, every: list[Guess]) -> list[Guess]:
 
 def is_flow_stage(label: str) -> bool:
     """Does it name the stage of a fan, a pump or a cooler?"""
-    steps = any(word.endswith(stage) for word in tokens(label) for stage in STAGE)
-    return steps and (is_of_flow(label) or Role.COOLANT in roles_of(label))
+    return is_stage(label) and (is_of_flow(label) or Role.COOLANT in roles_of(label))
 
 
 def is_of_flow(label: str) -> bool:

@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from distinct_machines import DISTINCT
+from library_machines import DISTINCT
 
 from fem.matrices.assembly import assemble
 from fem.matrices.material import Conductivity

@@ -4,7 +4,7 @@ import math
 
 import pytest
 import shapely
-from distinct_machines import DISTINCT
+from library_machines import DISTINCT
 from measures import area
 
 from geom import COARSE, InputError, build_mesh, library, load_machine, mesh_quality, part_table

@@ -4,8 +4,7 @@ import math
 
 import numpy as np
 import pytest
-from distinct_machines import DISTINCT
-from inside_parts import point_in
+from library_machines import DISTINCT, point_in
 from measures import area, facets_of_tets, keys, tet_volumes
 
 from geom import COARSE, build_mesh, load_machine, part_table

@@ -5,7 +5,7 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 import pytest
-from inside_parts import point_in
+from library_machines import point_in
 from small_case import small_case
 
 from geom import load_machine

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 from bare_networks import means_only
-from distinct_machines import DISTINCT
+from library_machines import DISTINCT
 
 from geom import load_machine
 from lumped.build.pipeline import prepared

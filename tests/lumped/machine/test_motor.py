@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from inside_parts import point_in
+from library_machines import point_in
 
 from geom import load_machine
 from geom.errors import InputError

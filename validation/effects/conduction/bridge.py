@@ -113,8 +113,8 @@ def shafts(scene: Scene) -> list[str]:
     Where nothing is known to turn and no speed was recorded, there is none.
     """
     network, moves = scene.network, "speed" in scene.recorded
-    known = with_role(network, Role.SHAFT) or with_role(network, Role.ROTOR)
-    return known or [p for p in turning(network) if moves or turns(network, p)]
+    axle = with_role(network, Role.SHAFT) or with_role(network, Role.ROTOR)
+    return axle or [p for p in turning(network) if moves or turns(network, p)]
 
 
 def heat_sink(network: Network) -> str | None:

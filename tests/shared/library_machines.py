@@ -1,8 +1,13 @@
-"""Points inside the parts of a machine."""
+"""Machines of the library that are meshed in another way each, and points inside the parts of a machine."""
 
 import shapely
 
+from geom import library
 from geom.description.profile import ArcGrid
+
+# what is left out has the same parts in other lengths: it is on the bases of M1, which are there
+ALIKE = {"pmsm-m2-no-base", "pmsm-m2-plate", "pmsm-m3-no-base", "pmsm-m3-plate"}
+DISTINCT = [name for name in library() if name not in ALIKE]
 
 
 def point_in(machine, name):
