@@ -35,6 +35,7 @@ WORDS = {name: _words(text) for name, text in VOCABULARY["words"].items()}
 SETPOINT, READ, MODELLED, INLET, NOTHING = (WORDS[n] for n in ("setpoint", "read", "modelled", "inlet", "nothing"))
 DIFFERENCE, CLOCKS, LOSS, OUTER, CHANNELS = (WORDS[n] for n in ("difference", "clock", "loss", "outer", "channels"))
 EXTREME, SPREAD, MEAN, INSTRUMENT, MACHINE = (WORDS[n] for n in ("extreme", "spread", "mean", "instrument", "machine"))
+EXHAUST, PUMP = WORDS["exhaust"], WORDS["pump"]
 SPARE, RUNS, SUPPLY, GOES_IN, COMES_OUT = (WORDS[n] for n in ("spare", "runs", "supply", "goes_in", "comes_out"))
 PHRASES = {
     re.compile(rf"(?:(?<![^\W\d_])|(?<=[a-z])(?=[A-Z]))(?i:{phrase.replace(' ', '[ _-]?')})(?![a-zß-ÿ])"): word

@@ -8,7 +8,7 @@ from __future__ import annotations
 import itertools
 import re
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -16,7 +16,19 @@ from geom.description.names import is_plain
 from geom.description.roles import Role
 from geom.errors import InputError
 from geom.escapes import toml_key, toml_value
-from measured.headers.words import CHANNELS, COMES_OUT, LOSS, QUANTITY, is_setpoint, quantities_of, roles_of, tokens
+from measured.headers.words import (
+    CHANNELS,
+    COMES_OUT,
+    EXHAUST,
+    LOSS,
+    PUMP,
+    QUANTITY,
+    is_setpoint,
+    is_spoken,
+    quantities_of,
+    roles_of,
+    tokens,
+)
 from measured.importing.guess import AS_WINDING, AXES, OF_INSTRUMENT, Array, Guess, in_memory, is_whole
 from measured.importing.source import Source
 
@@ -26,8 +38,10 @@ TIME_CONSTANT = 0.3  # of the record: most tests last three time constants
 POWERS = {"power": 1.0, "current": 2.0, "share": 1.0}  # of a loss that follows it
 MAIN = {"power": "power_W", "current": "current_A"}  # what the surest column of that quantity feeds
 STIRS = {"speed", "vehicle_speed", "air_flow", "water_flow"}  # what a share of does not heat
+FLOWS = ("air_flow", "water_flow")
 HEATS = tuple(POWERS)  # in the order in which a record tells the heat
 PLATINUM = re.compile(r"(?i)pt[ -]?10{2,3}(?!\d)")  # the number is part of the sensor's name
+EXHAUSTED = "the air that leaves the machine, beside a room"
 STILL = 0.1  # of the largest rise: what warms by less is hardly a part of the machine
 MOST = (2.0, 98.0)  # per cent of the readings between which they are no outliers
 COLD_K = 3.0  # by which a room may be warmer than the parts at the start
@@ -58,6 +72,7 @@ class FirstNetwork:
     capacities : node -> (J/K, prior of its logarithm);  terms : links and losses;  watts : mean of all losses
     learnt : tests that its numbers were learnt from, none where they are orders of magnitude
     wound : nodes of the winding by their readings
+    measures : input -> quantity, of shares of a flow, which films may follow and losses do not
     """
 
     name: str
@@ -67,11 +82,14 @@ class FirstNetwork:
     watts: float
     learnt: Sequence[str] = ()
     wound: frozenset[str] = frozenset()
+    measures: Mapping[str, str] = field(default_factory=dict)
 
     def text(self) -> str:
         """As network.toml."""
         lines = [*self._remark(), "", "[network]", f"name = {toml_value(self.name)}"]
         lines += [f"boundaries = {toml_value(list(self.boundaries))}", ""]
+        for name, quantity in self.measures.items():
+            lines += [f"[inputs.{toml_key(name)}]", f"quantity = {toml_value(quantity)}", ""]
         role_of = {node: next((r for r in roles_of(node) if r not in BOUNDARIES), "") for node in self.capacities}
         role_of |= dict.fromkeys(self.wound, Role.WINDING)
         whole = [node for node in role_of if is_whole(node)]
@@ -121,7 +139,9 @@ def of_machine(columns: Columns) -> Columns:
     parts = [(s, g) for s, g, place in every if g.doubt != OF_INSTRUMENT and place not in ("", *BOUNDARIES.values())]
     if parts:
         columns = [(s, Guess(g.column, "", doubt=g.doubt) if g.doubt == OF_INSTRUMENT else g) for s, g in columns]
-    if len(parts) < 2 or any(place == "ambient" or g.why == "values" for _, g, place in every):
+    if any(place == "ambient" and not _leaves(s, g) for s, g, place in every):
+        return _without_exhaust(columns)
+    if len(parts) < 2 or any(g.why == "values" for _, g, place in every):
         return columns
     starts = [float(v[np.isfinite(v)][0]) for v in (in_memory(*part) for part in parts) if np.isfinite(v).any()]
     coldest, most = float(np.median(starts)) + COLD_K, STILL * max(rise(*part) for part in parts)
@@ -132,7 +152,18 @@ def of_machine(columns: Columns) -> Columns:
         if not roles_of(s.labels[g.column]) and mean <= coldest and np.ptp(np.nanpercentile(values, MOST)) <= most:
             means.setdefault(mean, g.column)
     room = means[min(means)] if means else ""
-    return [(s, replace(g, place="ambient") if g.column == room else g) for s, g in columns]
+    columns = [(s, replace(g, place="ambient") if g.column == room else g) for s, g in columns]
+    return _without_exhaust(columns) if room else columns
+
+
+def _without_exhaust(columns: Columns) -> Columns:
+    """Without air that leaves the machine, which beside a room is no boundary: the machine heats it."""
+    return [(s, Guess(g.column, "", doubt=EXHAUSTED) if _leaves(s, g) else g) for s, g in columns]
+
+
+def _leaves(source: Source, g: Guess) -> bool:
+    """Is it the air that leaves the machine, and not put by hand?"""
+    return g.quantity == "temperature" and not g.place and is_spoken(source.labels[g.column], EXHAUST)
 
 
 def starter(columns: Columns, name: str, span_s: float) -> FirstNetwork:
@@ -156,7 +187,19 @@ def starter(columns: Columns, name: str, span_s: float) -> FirstNetwork:
     by_name = {place for s, g, place in hot if roles_of(s.labels[g.column])[:1] == [Role.WINDING]}
     wound = frozenset({place for _, g, place in hot if AS_WINDING in g.doubt} | by_name)
     capacities = dict.fromkeys(nodes, (G * TIME_CONSTANT * span_s / len(nodes), SPREAD))
-    return FirstNetwork(name, boundaries, capacities, [*inside, *outside, *losses], watts, wound=wound)
+    terms = [*inside, *outside, *losses]
+    return FirstNetwork(name, boundaries, capacities, terms, watts, wound=wound, measures=_flows(columns))
+
+
+def _flows(columns: Columns) -> dict[str, str]:
+    """Input -> flow of a pump, a fan or a valve of which a share was recorded."""
+    shares = [(g.feeds, _stirred(s.labels[g.column])) for s, g in columns if g.quantity == "share" and g.feeds]
+    return {feeds: flow[0] for feeds, flow in shares if flow and flow[0] in FLOWS}
+
+
+def _stirred(label: str) -> list[str]:
+    """What a share of such a name stirs, instead of heating."""
+    return [q for q in quantities_of(label) if q in STIRS] or ["water_flow"] * is_spoken(label, PUMP)
 
 
 BOUNDARIES = {Role.AMBIENT: "ambient", Role.COOLANT: "coolant"}
@@ -210,7 +253,7 @@ def heating(columns: Columns, quantity: str) -> list[tuple[Source, Guess]]:
     """
     candidates = [(s, g) for s, g in columns if g.quantity == quantity and g.feeds]
     if quantity != "power":
-        return [(s, g) for s, g in candidates if not STIRS & {*quantities_of(s.labels[g.column])}]
+        return [(s, g) for s, g in candidates if not _stirred(s.labels[g.column])]
     kinds = {g.quantity for _, g in columns if g.feeds}
     lost = [(s, g) for s, g in candidates if LOSS & {*tokens(s.labels[g.column])}]
     comes_out = "torque" in kinds or any(COMES_OUT & {*tokens(s.labels[g.column])} for s, g in candidates)
