@@ -29,6 +29,7 @@ from measured.importing.guess import (
     OF_INSTRUMENT,
     OF_SENSOR,
     THAT_CAN_BE,
+    UNKNOWN,
     UNTOLD,
     WHOLE,
     Guess,
@@ -211,7 +212,7 @@ def _lost(left: Columns) -> dict[str, str]:
         if (
             g.doubt.endswith(BROKEN)
             or (g.quantity and may_be_temperature(r.source, g))
-            or (moves and g.doubt == UNTOLD)
+            or (moves and (g.doubt == UNTOLD or g.doubt.endswith(UNKNOWN)))
         ):
             out.setdefault(g.doubt, []).append(g.column)
     checks = [doubt for doubt in out if doubt.endswith("gives coolant already")]

@@ -12,7 +12,7 @@ from geom.arrays import Array
 from geom.description.roles import Role
 from geom.errors import InputError
 from lumped.schemas.bounds import COLDEST, HOTTEST
-from measured.headers.cells import unit_of
+from measured.headers.cells import is_unit, unit_of
 from measured.headers.words import (
     EXTREME,
     INLET,
@@ -88,7 +88,7 @@ WHOLE = "names no part: the winding?"
 BY_LETTERS = "by its letters alone"
 HARDLY = "hardly warms: taken as the room"
 SEVERAL = "of the first of several machines, by their numbers?"
-UNKNOWN = "unknown"
+UNKNOWN = "unknown"  # of a unit
 RELATIVE = "relative to a nominal"
 BY_READINGS = "a temperature, by its readings alone"
 FACTORS = ("current", "voltage", "torque", "speed")
@@ -375,7 +375,8 @@ def _left_out(source: Source, column: str) -> str:
     if (unit == "mV" and "voltage" not in quantities) or (unit in SIGNALS and quantities == ["temperature"]):
         return f"in {unit}: {OF_SENSOR}, no reading of its own"
     if unit_text and not unit:
-        return f"its unit '{unit_text}' is of nothing a model reads"
+        of_nothing = is_unit(unit_text) or not quantities
+        return f"its unit '{unit_text}' is {'of nothing a model reads' if of_nothing else UNKNOWN}"
     words = set(tokens(label)) | set(re.findall(r"[a-z]+", label.lower()))
     if is_rise(label) and not words & QUANTITY["power"]:
         return "a difference of temperatures, not a temperature"

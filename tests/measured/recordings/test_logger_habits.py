@@ -241,6 +241,12 @@ def test_a_place_by_hand_is_not_doubted(tmp_path):
     assert json.loads((tmp_path / "new.json").read_text())["warnings"] == []
 
 
+def test_what_a_model_would_read_in_a_unit_that_nobody_knows_is_said_first(tmp_path):
+    header = "t,winding,room,I,Flow,Depth\ns,°C,°C,A,bucket/h,kPa"
+    document = written(tmp_path, file(tmp_path, header, "t", "W", "A", "I", 200 + 9 * ON, 300 + 9 * ON))
+    assert document["warnings"] == ["'Flow' is left out: its unit 'bucket/h' is unknown"]
+
+
 def test_a_folder_that_cannot_be_made_is_told_before_anything_is_read(tmp_path):
     (tmp_path / "a.csv").write_text("no recording at all")
     with pytest.raises(InputError, match="no such folder"):
