@@ -124,11 +124,14 @@ def is_reading(cell: object) -> bool:
     return text.lower() in EMPTY | SWITCH.keys() or is_clock(text) or is_date(text)
 
 
+PER_TIME = re.compile(r"/([hs])(?:(?<=h)(?:ou)?rs?|(?<=s)ec)$")  # m3/hr, l/sec
+
+
 def unit_of(text: str) -> str:
     """A unit as sheets write it, "" where it is none that is known."""
     if text in SHEET_UNITS:
         return text
-    plain = text.strip().strip("[](){}<>").replace(" ", "").replace("Ω", "ω").lower()
+    plain = PER_TIME.sub(r"/\1", text.strip().strip("[](){}<>").replace(" ", "").replace("Ω", "ω").lower())
     if match := DEGREES.fullmatch(plain):
         c, _, k, celsius, _ = match.groups()
         return "degC" if c or celsius else "K" if k else "degF"

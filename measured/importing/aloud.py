@@ -14,7 +14,9 @@ from measured.headers.words import INLET, is_setpoint, is_spoken, quantities_of,
 from measured.importing.aligned import Recording
 from measured.importing.draft import ASSUMED_ROOM, Draft
 from measured.importing.guess import (
+    AS_SPEED,
     AS_WINDING,
+    BY_HAND,
     BY_LETTERS,
     BY_READINGS,
     CERTAIN,
@@ -27,6 +29,7 @@ from measured.importing.guess import (
     OF_INSTRUMENT,
     OF_SENSOR,
     THAT_CAN_BE,
+    UNKNOWN,
     UNTOLD,
     WHOLE,
     Guess,
@@ -52,7 +55,7 @@ OUTLET = "it warms with the machine: an outlet?"
 SHEETS = "tests/*.toml"  # where each column has its doubt
 PLACES = (NO_PART, NUMBERED, BY_READINGS, AS_WINDING)
 WEAK = (
-    *(NO_PART, NUMBERED, BY_READINGS, AS_WINDING, HARDLY, WHOLE, BY_LETTERS, OF_INSTRUMENT, OF_DEVICE),
+    *(NO_PART, NUMBERED, BY_READINGS, AS_WINDING, HARDLY, WHOLE, BY_LETTERS, OF_INSTRUMENT, OF_DEVICE, AS_SPEED),
     "gives coolant already",
 )
 STAY = ("stays in the file as a check, and feeds nothing", "stay in the file as checks, and feed nothing")
@@ -209,7 +212,7 @@ def _lost(left: Columns) -> dict[str, str]:
         if (
             g.doubt.endswith(BROKEN)
             or (g.quantity and may_be_temperature(r.source, g))
-            or (moves and g.doubt == UNTOLD)
+            or (moves and (g.doubt == UNTOLD or g.doubt.endswith(UNKNOWN)))
         ):
             out.setdefault(g.doubt, []).append(g.column)
     checks = [doubt for doubt in out if doubt.endswith("gives coolant already")]
@@ -225,7 +228,7 @@ def _doubted(columns: Columns) -> dict[str, str]:
     most = max((rise(r.source, g) for r, g in columns if g.place), default=0.0)
     for r, g in columns:
         label = r.source.labels[g.column]
-        unknown = g.place and not roles_of(f"{label} {g.place}") and not is_whole(label)
+        unknown = g.place and g.why != BY_HAND and not roles_of(f"{label} {g.place}") and not is_whole(label)
         fluid = g.place == "coolant" and not is_spoken(label, INLET)
         flows = (OUTLET if rise(r.source, g) > STILL * most else NO_INLET) if fluid else ""
         doubt = ELSE if ELSE in g.doubt else g.doubt or (NO_PART if unknown else flows)

@@ -41,6 +41,16 @@ IDLE = 0.02  # of the largest
 ROLES = ("calibrate", "validate", "hold-out")
 
 
+def check_new_folder(folder: Path) -> None:
+    """InputError where a case cannot be written."""
+    if within_inputs(folder):
+        raise InputError("a case keeps its inputs there", str(folder), "--out with a folder beside that case")
+    if folder.exists():
+        raise InputError("is there already", str(folder), "--out with the name of a new folder")
+    if not folder.parent.is_dir():
+        raise InputError("no such folder", str(folder.parent), "--out in a folder that is there")
+
+
 @contextmanager
 def folder_whole(folder: Path) -> Iterator[Path]:
     """A folder to fill that takes its place only when it is complete; gone if anything fails, or the process is told
@@ -48,12 +58,7 @@ def folder_whole(folder: Path) -> Iterator[Path]:
 
     What a killed process left of it counts for nothing, and goes with the next one.
     """
-    if within_inputs(folder):
-        raise InputError("a case keeps its inputs there", str(folder), "--out with a folder beside that case")
-    if folder.exists():
-        raise InputError("is there already", str(folder), "--out with the name of a new folder")
-    if not folder.parent.is_dir():
-        raise InputError("no such folder", str(folder.parent), "--out in a folder that is there")
+    check_new_folder(folder)
     start = _start_of(folder)
     for left in abandoned(start.parent, re.compile(rf"{re.escape(start.name)}\.[0-9a-f]{{32}}")):
         shutil.rmtree(left, ignore_errors=True)

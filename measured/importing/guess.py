@@ -13,7 +13,7 @@ from geom.description.roles import Role
 from geom.errors import InputError
 from lumped.model.quantities import AIR, INPUTS, LIQUID, USUAL
 from lumped.schemas.bounds import COLDEST, HOTTEST
-from measured.headers.cells import unit_of
+from measured.headers.cells import is_unit, unit_of
 from measured.headers.words import (
     EXTREME,
     INLET,
@@ -66,7 +66,7 @@ OTHER_UNITS = {  # of loggers, that no table of a sheet lists: for pint
     "power": ("mW", "MW", "hp", "metric_horsepower"),
     "torque": ("mN*m", "cN*m", "lbf*ft"),
     "speed": ("krpm", "deg/s"),
-    "water_flow": ("l/h", "gallon/min", "ml/min", "ml/s"),
+    "water_flow": ("l/h", "l/s", "gallon/min", "ml/min", "ml/s"),
     "air_flow": ("ft**3/min",),
 }
 SUREST = "unit and name"  # by which a column was told: such a one goes before others
@@ -92,7 +92,7 @@ WHOLE = "names no part: the winding?"
 BY_LETTERS = "by its letters alone"
 HARDLY = "hardly warms: taken as the room"
 SEVERAL = "of the first of several machines, by their numbers?"
-UNKNOWN = "unknown"
+UNKNOWN = "unknown"  # of a unit
 RELATIVE = "relative to a nominal"
 BY_READINGS = "a temperature, by its readings alone"
 FACTORS = ("current", "voltage", "torque", "speed")
@@ -102,9 +102,12 @@ FUNCTION = "made of other columns"
 OF_SENSOR = "of a sensor"
 AS_WINDING = "taken as the winding"
 FASTEST, OF_STATOR = (f"{why}: {AS_WINDING}" for why in ("follows the heat fastest", "of the stator"))
+AS_SPEED = "no speed was recorded: the frequency of the supply, as of one pole pair"
+LARGEST_HZ = 1000.0  # of a supply; inverters for motors switch faster
 QUICK = 0.6  # of the fastest: windings of the same machine
 PERCENT = 130.0  # of a load, at most
 MANUAL = "left out by hand"
+BY_HAND = "by hand"  # how a column was told that the user placed
 CERTAIN = (
     "a set point, not a reading",
     "a number that names a row",
@@ -150,7 +153,7 @@ def guesses(source: Source, clock: Sequence[str], target: Target) -> list[Guess]
     for i, g in enumerate(every):  # a component has an input of its own: the current is the root sum square of both
         if g.feeds and (axis := axis_of(source.labels[g.column])) in both:
             every[i] = replace(g, feeds=f"{axis}_A")
-    every = _products(source, every, target)
+    every = _products(source, _with_speed(source, every, target), target)
     every = _quickest(source, every, target)
     return _of_one(source, single(every if kelvin else _in_fahrenheit(source, every), target, source.labels))
 
@@ -231,6 +234,17 @@ def _products(source: Source, every: list[Guess], target: Target) -> list[Guess]
         else g
         for g in every
     ]
+
+
+def _with_speed(source: Source, every: list[Guess], target: Target) -> list[Guess]:
+    """With the frequency of a supply as the speed, where none was recorded and the model reads no frequency."""
+    if any(g.quantity == "speed" and g.feeds for g in every) or "frequency" in target.inputs.values():
+        return every
+    for i, g in enumerate(every):
+        if g.quantity == "frequency" and g.feeds and np.nanmax(in_memory(source, g)) <= LARGEST_HZ:
+            speed = _fed(replace(g, quantity="speed", doubt=AS_SPEED), source.labels[g.column], target)
+            return [*every[:i], speed, *every[i + 1 :]]
+    return every
 
 
 def _is_plain(source: Source, g: Guess) -> bool:
@@ -378,7 +392,8 @@ def _left_out(source: Source, column: str) -> str:
     if (unit == "mV" and "voltage" not in quantities) or (unit in SIGNALS and quantities == ["temperature"]):
         return f"in {unit}: {OF_SENSOR}, no reading of its own"
     if unit_text and not unit:
-        return f"its unit '{unit_text}' is of nothing a model reads"
+        of_nothing = is_unit(unit_text) or not quantities
+        return f"its unit '{unit_text}' is {'of nothing a model reads' if of_nothing else UNKNOWN}"
     words = set(tokens(label)) | set(re.findall(r"[a-z]+", label.lower()))
     if is_rise(label) and not words & QUANTITY["power"]:
         return "a difference of temperatures, not a temperature"
@@ -618,7 +633,7 @@ def _moved(g: Guess, source: Source, to: str, target: Target) -> Guess:
         raise InputError(f"is a {g.quantity}, '{to}' wants a {quantity}".replace("_", " "), g.column, "another column")
     unit = g.unit if g.unit in QUANTITIES[quantity].units else _unit(source, g.column, quantity, "")[0]
     place, feeds = (to, "") if quantity == "temperature" and to not in target.inputs else ("", to)
-    return replace(g, quantity=quantity, unit=unit, place=place, feeds=feeds, doubt="")
+    return replace(g, quantity=quantity, unit=unit, place=place, feeds=feeds, why=BY_HAND, doubt="")
 
 
 def input_name(g: Guess) -> str:

@@ -17,7 +17,18 @@ from geom.description.roles import Role
 from geom.errors import InputError
 from geom.escapes import toml_key, toml_value
 from lumped.model.quantities import FLOWS
-from measured.headers.words import CHANNELS, COMES_OUT, LOSS, QUANTITY, is_setpoint, quantities_of, roles_of, tokens
+from measured.headers.words import (
+    CHANNELS,
+    COMES_OUT,
+    EXHAUST,
+    LOSS,
+    QUANTITY,
+    is_setpoint,
+    is_spoken,
+    quantities_of,
+    roles_of,
+    tokens,
+)
 from measured.importing.guess import AS_WINDING, AXES, OF_INSTRUMENT, Array, Guess, in_memory, is_whole
 from measured.importing.source import Source
 
@@ -29,6 +40,7 @@ MAIN = {"power": "power_W", "current": "current_A"}  # what the surest column of
 STIRS = {"speed", *FLOWS}  # what a share of does not heat
 HEATS = tuple(POWERS)  # in the order in which a record tells the heat
 PLATINUM = re.compile(r"(?i)pt[ -]?10{2,3}(?!\d)")  # the number is part of the sensor's name
+EXHAUSTED = "the air that leaves the machine, beside a room"
 STILL = 0.1  # of the largest rise: what warms by less is hardly a part of the machine
 MOST = (2.0, 98.0)  # per cent of the readings between which they are no outliers
 COLD_K = 3.0  # by which a room may be warmer than the parts at the start
@@ -122,7 +134,9 @@ def of_machine(columns: Columns) -> Columns:
     parts = [(s, g) for s, g, place in every if g.doubt != OF_INSTRUMENT and place not in ("", *BOUNDARIES.values())]
     if parts:
         columns = [(s, Guess(g.column, "", doubt=g.doubt) if g.doubt == OF_INSTRUMENT else g) for s, g in columns]
-    if len(parts) < 2 or any(place == "ambient" or g.why == "values" for _, g, place in every):
+    if any(place == "ambient" and not _leaves(s, g) for s, g, place in every):
+        return _without_exhaust(columns)
+    if len(parts) < 2 or any(g.why == "values" for _, g, place in every):
         return columns
     starts = [float(v[np.isfinite(v)][0]) for v in (in_memory(*part) for part in parts) if np.isfinite(v).any()]
     coldest, most = float(np.median(starts)) + COLD_K, STILL * max(rise(*part) for part in parts)
@@ -133,7 +147,18 @@ def of_machine(columns: Columns) -> Columns:
         if not roles_of(s.labels[g.column]) and mean <= coldest and np.ptp(np.nanpercentile(values, MOST)) <= most:
             means.setdefault(mean, g.column)
     room = means[min(means)] if means else ""
-    return [(s, replace(g, place="ambient") if g.column == room else g) for s, g in columns]
+    columns = [(s, replace(g, place="ambient") if g.column == room else g) for s, g in columns]
+    return _without_exhaust(columns) if room else columns
+
+
+def _without_exhaust(columns: Columns) -> Columns:
+    """Without air that leaves the machine, which beside a room is no boundary: the machine heats it."""
+    return [(s, Guess(g.column, "", doubt=EXHAUSTED) if _leaves(s, g) else g) for s, g in columns]
+
+
+def _leaves(source: Source, g: Guess) -> bool:
+    """Is it the air that leaves the machine, and not put by hand?"""
+    return g.quantity == "temperature" and not g.place and is_spoken(source.labels[g.column], EXHAUST)
 
 
 def starter(columns: Columns, name: str, span_s: float) -> FirstNetwork:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Mapping
-from dataclasses import asdict, replace
+from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
@@ -28,12 +28,12 @@ def yardstick_document(yard: Yardstick | None, comparison: Comparison, case: Cas
     if yard is None:
         return {}
     words = {"sentence": sentence(yard, comparison), "warning": warning(yard, comparison)}
-    larger = replace(case, model=replace(case.model, network=standing(case)))
+    network = standing(case)
     of_file = {x.name for x in case.model.network.links}
     lacking = [
         s.document()
-        for s in suggested_effects(yard.terms, larger)
-        if all(x.name in of_file for x in links_between(larger.model.network, s.place, s.other))  # none was added
+        for s in suggested_effects(yard.terms, case, network)
+        if all(x.name in of_file for x in links_between(network, s.place, s.other))  # none was added
     ]
     return {"yardstick": {**yard.document(), "model_K": model_error(yard, comparison), "lacking": lacking, **words}}
 

@@ -266,7 +266,7 @@ def further_step(
         likely = [o for o in diagnosis.odds if o.effects][:LIKELY]
         trials += [(o.effects, {"probability": o.probability, "verdict": diagnosis.verdict}) for o in likely]
     if free < left_out:
-        every = suggested_effects(yard.terms, replace(case, model=replace(case.model, network=standing(case))))
+        every = suggested_effects(yard.terms, case, standing(case))
         alone = [(s,) for s in every if s.effects] if free * WORTH < left_out else []
         for some in (tuple(s for s in every if s.effects), *alone):
             share = max((s.share for s in some), default=0.0)

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from lumped.model.network import Link, Source
+from lumped.model.network import Link, Network, Source
 from measured.case import Case, Test
 from validation.effects import catalogue
 from validation.effects.input_terms import law_sentence
@@ -50,25 +50,30 @@ class Suggestion:
         return {**vars(self), "words": self.words}
 
 
-def suggested_effects(terms: Sequence[Term], case: Case) -> tuple[Suggestion, ...]:
-    """Of the terms that a free network needs those that the case's network lacks, what carries most heat first."""
+def suggested_effects(terms: Sequence[Term], case: Case, standing: Network | None = None) -> tuple[Suggestion, ...]:
+    """Of the terms that a free network needs those that a network lacks, what carries most heat first.
+
+    standing : the network with what was added to the case's; without it the case's.  Effects sit where the case's has
+        places for them, as `add` wants it: a link that was added is no place of its own
+    """
+    standing = standing or case.model.network
     groups: dict[tuple[str, ...], list[Term]] = {}
     for term in terms:
         groups.setdefault((term.kind, *sorted({term.place, term.other or term.place})), []).append(term)
-    every = (_suggestion([t for t in group if t.place == group[0].place], case) for group in groups.values())
+    every = (_suggestion([t for t in group if t.place == group[0].place], case, standing) for group in groups.values())
     return tuple(sorted((s for s in every if s), key=lambda s: -s.share))
 
 
-def _suggestion(group: Sequence[Term], case: Case) -> Suggestion | None:
+def _suggestion(group: Sequence[Term], case: Case, network: Network) -> Suggestion | None:
     """Of the terms between two places, or at one; None where what is declared can do the same."""
-    first, network, sizes = group[0], case.model.network, largest_inputs(case.usable)
+    first, sizes = group[0], largest_inputs(case.usable)
     laws = [x.law for x in term_elements(network, first)]
     lacking = [t for t in group if not any(follows(law, inputs_of(t), sizes) for law in laws)]
     if not lacking:
         return None
     inputs = tuple(dict.fromkeys(name for t in lacking for name in sorted(inputs_of(t))))
     absolute = first.unit.startswith("W")
-    starts = _starts(first, set(inputs), sum(t.value for t in lacking), case) if absolute else {}
+    starts = _starts(first, set(inputs), sum(t.value for t in lacking), case, network) if absolute else {}
     terms = {one.name: t.value for t in lacking if absolute and (one := input_term(t, network, sizes))}
     return Suggestion(
         first.place,
@@ -83,9 +88,9 @@ def _suggestion(group: Sequence[Term], case: Case) -> Suggestion | None:
     )
 
 
-def _starts(term: Term, inputs: set[str], value: float, case: Case) -> dict[str, float]:
+def _starts(term: Term, inputs: set[str], value: float, case: Case, network: Network) -> dict[str, float]:
     """Effects that add a law of just these inputs there, with the amplitude that makes `value` at their largest."""
-    network, tests, out = case.model.network, case.usable, dict[str, float]()
+    tests, out = case.usable, dict[str, float]()
     for one in catalogue(scene_of(case)):
         if one.fault or one.mapping != "amplitude":
             continue

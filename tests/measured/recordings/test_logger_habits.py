@@ -8,6 +8,8 @@ import numpy as np
 import pytest
 
 from geom.description.roles import Role
+from geom.errors import InputError
+from lumped.declarations.network import read_network
 from measured.headers.cells import split_unit
 from measured.headers.words import roles_of
 from measured.importing.aligned import Recording, shift
@@ -201,6 +203,56 @@ def test_an_outlet_beside_an_inlet_is_a_check_and_the_first_line_says_so(tmp_pat
     assert document["warnings"] == ["'T_cool_out [°C]' stays in the file as a check, and feeds nothing"]
 
 
+def test_air_that_leaves_the_machine_is_no_boundary_beside_a_room(tmp_path):
+    """Without a room it is what there is."""
+    header = "t [s],winding [°C],EXHAUST [°C],I [A]"
+    found, _ = read(file(tmp_path, f"{header},room [°C]", "t", "W", "H", "I", "A"))
+    assert goes(found) == {"winding [°C]": "winding", "I [A]": "current_A", "room [°C]": "ambient"}
+    found, _ = read(file(tmp_path, f"{header},frame [°C]", "t", "W", "A", "I", "H"))
+    assert goes(found)["EXHAUST [°C]"] == "coolant"
+
+
+def test_a_share_of_a_pump_is_a_flow_that_films_follow_and_heats_nothing(tmp_path):
+    header = "t [s],Wicklung [°C],Raum [°C],Pumpe [%]"
+    _, runs = read(file(tmp_path, header, "t", "W", "A", 40 + 60 * ON))
+    first = first_model(runs, {}).first
+    assert first.measures == {"share_percent": "water_flow"}
+    assert not any(term.of for term in first.terms if len(term.ends) == 1)
+    assert read_network(tomllib.loads(first.text())).measures("share_percent") == "water_flow"
+
+
+@pytest.mark.parametrize(
+    ("more", "most_Hz", "feeds"),
+    [("", 50.0, "speed_rpm"), (",n [rpm]", 50.0, "switching_Hz"), ("", 8e3, "switching_Hz")],
+)
+def test_the_frequency_of_the_supply_is_the_speed_where_none_was_recorded(tmp_path, more, most_Hz, feeds):
+    """50 Hz are 3000 rpm of one pole pair; an inverter switches faster than any motor is fed."""
+    columns = ["t", "W", "A", "I", most_Hz * ON, *["n"] * bool(more)]
+    found, _ = read(file(tmp_path, f"t [s],winding [°C],room [°C],I [A],Freq [Hz]{more}", *columns))
+    guess, source = found["Freq [Hz]"]
+    assert guess.feeds == feeds
+    assert in_memory(source, guess).max() == pytest.approx(3000.0 if feeds == "speed_rpm" else most_Hz)
+
+
+def test_a_place_by_hand_is_not_doubted(tmp_path):
+    source = file(tmp_path, "t [s],winding [°C],Xyz 7 [°C],room [°C],I [A]", "t", "W", "H", "A", "I")
+    wishes = Wishes(out=tmp_path / "made", yes=True, places={"Xyz 7 [°C]": "pulley"})
+    assert new([source], wishes, str(tmp_path / "new.json")) == 0
+    assert json.loads((tmp_path / "new.json").read_text())["warnings"] == []
+
+
+def test_what_a_model_would_read_in_a_unit_that_nobody_knows_is_said_first(tmp_path):
+    header = "t,winding,room,I,Flow,Depth\ns,°C,°C,A,bucket/h,kPa"
+    document = written(tmp_path, file(tmp_path, header, "t", "W", "A", "I", 200 + 9 * ON, 300 + 9 * ON))
+    assert document["warnings"] == ["'Flow' is left out: its unit 'bucket/h' is unknown"]
+
+
+def test_a_folder_that_cannot_be_made_is_told_before_anything_is_read(tmp_path):
+    (tmp_path / "a.csv").write_text("no recording at all")
+    with pytest.raises(InputError, match="no such folder"):
+        new([tmp_path / "a.csv"], Wishes(out=tmp_path / "none" / "made", yes=True), None)
+
+
 def test_a_test_begins_where_its_inputs_do(tmp_path):
     late = ["" if t < 300 else f"{i:.1f}" for t, i in zip(T, WARM["I"])]
     (test,) = written(tmp_path, file(tmp_path, "t [s],winding [°C],room [°C],I [A]", "t", "W", "A", late))["tests"]
@@ -300,8 +352,11 @@ def test_a_labview_file_has_its_units_in_its_second_head_and_no_groups(tmp_path)
         ("příruba", Role.END_SHIELD),
         ("Hölje", Role.HOUSING),
         ("axle", Role.SHAFT),
+        ("T polea", Role.SHAFT),
         ("gearbox oil", None),
         ("oil inlet", Role.COOLANT),
+        ("Bain d'huile", None),
+        ("T escobillas", Role.COMMUTATOR),
     ],
 )
 def test_names_of_parts_in_the_words_of_other_shops(name, role):
@@ -316,6 +371,9 @@ def test_names_of_parts_in_the_words_of_other_shops(name, role):
         ("air mass flow [kg/h]", "air_flow", 9.0 / 1.2, False),  # 1.2 kg/m3 at 20 degC
         ("Luftmassenstrom [kg/s]", "air_flow", 3600 * 9.0 / 1.2, False),
         ("air flow [m3/h]", "air_flow", 9.0, False),
+        ("flow [m3/hr]", "water_flow", 9000.0 / 60.0, False),
+        ("flow [L/hour]", "water_flow", 9.0 / 60.0, False),
+        ("flow [l/sec]", "water_flow", 60 * 9.0, False),
         ("gas [kg/h]", "water_flow", 9.0 / 60.0, True),
     ],
 )

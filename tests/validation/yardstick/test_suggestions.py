@@ -12,6 +12,7 @@ from thermoscope.case_folder.stored_yardstick import yardstick_document
 from validation.calibration.calibrate import no_progress
 from validation.comparison.compare import errors
 from validation.effects import effect
+from validation.parameters.unknowns import scene_of, standing
 from validation.revision.improvement import Step, Supervisor, best, ended, further_step
 from validation.yardstick.suggestions import suggested_effects
 from validation.yardstick.terms import Term
@@ -84,6 +85,17 @@ def test_ends_that_an_added_effect_joins_are_not_told_as_lacking(case):
     mended = replace(poorer, model=replace(poorer.model, effects=(AddedEffect("convection.constant", "body"),)))
     lacking = [yardstick_document(yard, errors(c), c)["yardstick"]["lacking"] for c in (poorer, mended)]
     assert [len(rows) for rows in lacking] == [1, 0]
+
+
+def test_no_effect_is_suggested_on_a_link_that_an_added_effect_brought(case):
+    """`add` knows the places of the declared network only, and would refuse it."""
+    turning = [replace(t, inputs={**t.inputs, "speed_rpm": 1000.0 * t.inputs["load"]}) for t in case.tests]
+    poorer = without(replace(case, tests=tuple(turning)), ("core", "body"))
+    mended = replace(poorer, model=replace(poorer.model, effects=(AddedEffect("coupling", "body|core"),)))
+    terms = (link("body", "core", "", 2.0), link("body", "core", "speed_rpm", 1.5))
+    (found,) = suggested_effects(terms, mended, standing(mended))
+    assert found.effects
+    assert [effect(name, scene_of(mended)).name for name in found.starts] == list(found.starts)
 
 
 def test_per_capacity_there_is_no_start(case):

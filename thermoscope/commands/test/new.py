@@ -22,7 +22,7 @@ from lumped.model.sites import ASSUMED
 from lumped.schemas.reader import suggestion
 from measured.importing.aligned import Recording, common, grouped, longest_part, shift
 from measured.importing.aloud import first_lines, short_lines
-from measured.importing.case_files import folder_whole, read_runs, write_case
+from measured.importing.case_files import check_new_folder, folder_whole, read_runs, write_case
 from measured.importing.clock import Clock
 from measured.importing.dialogue import Dialogue
 from measured.importing.draft import ASSUMED_ROOM, Draft, test_name
@@ -112,6 +112,7 @@ def new_case(files: Sequence[Path], wishes: Wishes, target: str | None) -> int:
     folder, (start, end) = wishes.out or Path(test_name(files[0], [])), wishes.window_s
     if end is not None and end <= start:
         raise InputError(f"{start:g} is not before {end:g}", "--from, --to", "--from below --to")
+    check_new_folder(folder)  # before minutes of reading
     with progress() as tell:
         read = []
         for file in dict.fromkeys(files):
