@@ -16,7 +16,6 @@ from measured.importing.draft import ASSUMED_ROOM, Draft
 from measured.importing.guess import (
     AS_SPEED,
     AS_WINDING,
-    BY_HAND,
     BY_LETTERS,
     BY_READINGS,
     CERTAIN,
@@ -28,6 +27,7 @@ from measured.importing.guess import (
     OF_DEVICE,
     OF_INSTRUMENT,
     OF_SENSOR,
+    OF_USER,
     THAT_CAN_BE,
     UNKNOWN,
     UNTOLD,
@@ -228,7 +228,7 @@ def _doubted(columns: Columns) -> dict[str, str]:
     most = max((rise(r.source, g) for r, g in columns if g.place), default=0.0)
     for r, g in columns:
         label = r.source.labels[g.column]
-        unknown = g.place and g.why != BY_HAND and not roles_of(f"{label} {g.place}") and not is_whole(label)
+        unknown = g.place and g.why != OF_USER and not roles_of(f"{label} {g.place}") and not is_whole(label)
         fluid = g.place == "coolant" and not is_spoken(label, INLET)
         flows = (OUTLET if rise(r.source, g) > STILL * most else NO_INLET) if fluid else ""
         doubt = ELSE if ELSE in g.doubt else g.doubt or (NO_PART if unknown else flows)

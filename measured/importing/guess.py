@@ -107,7 +107,7 @@ LARGEST_HZ = 1000.0  # of a supply; inverters for motors switch faster
 QUICK = 0.6  # of the fastest: windings of the same machine
 PERCENT = 130.0  # of a load, at most
 MANUAL = "left out by hand"
-BY_HAND = "by hand"  # how a column was told that the user placed
+OF_USER = "the user"  # how a column was told that the user placed
 CERTAIN = (
     "a set point, not a reading",
     "a number that names a row",
@@ -633,7 +633,7 @@ def _moved(g: Guess, source: Source, to: str, target: Target) -> Guess:
         raise InputError(f"is a {g.quantity}, '{to}' wants a {quantity}".replace("_", " "), g.column, "another column")
     unit = g.unit if g.unit in QUANTITIES[quantity].units else _unit(source, g.column, quantity, "")[0]
     place, feeds = (to, "") if quantity == "temperature" and to not in target.inputs else ("", to)
-    return replace(g, quantity=quantity, unit=unit, place=place, feeds=feeds, why=BY_HAND, doubt="")
+    return replace(g, quantity=quantity, unit=unit, place=place, feeds=feeds, why=OF_USER, doubt="")
 
 
 def input_name(g: Guess) -> str:
