@@ -9,7 +9,6 @@ import pytest
 
 from geom.description.roles import Role
 from geom.errors import InputError
-from lumped.declarations.network import read_network
 from measured.headers.cells import split_unit
 from measured.headers.words import roles_of
 from measured.importing.aligned import Recording, shift
@@ -210,15 +209,6 @@ def test_air_that_leaves_the_machine_is_no_boundary_beside_a_room(tmp_path):
     assert goes(found) == {"winding [°C]": "winding", "I [A]": "current_A", "room [°C]": "ambient"}
     found, _ = read(file(tmp_path, f"{header},frame [°C]", "t", "W", "A", "I", "H"))
     assert goes(found)["EXHAUST [°C]"] == "coolant"
-
-
-def test_a_share_of_a_pump_is_a_flow_that_films_follow_and_heats_nothing(tmp_path):
-    header = "t [s],Wicklung [°C],Raum [°C],Pumpe [%]"
-    _, runs = read(file(tmp_path, header, "t", "W", "A", 40 + 60 * ON))
-    first = first_model(runs, {}).first
-    assert first.measures == {"share_percent": "water_flow"}
-    assert not any(term.of for term in first.terms if len(term.ends) == 1)
-    assert read_network(tomllib.loads(first.text())).measures("share_percent") == "water_flow"
 
 
 @pytest.mark.parametrize(
