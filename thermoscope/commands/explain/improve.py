@@ -133,5 +133,5 @@ def improvement_summary(document: Mapping[str, Any], folder: Folder, called: str
     plain = f"{document['yardstick']['sentence']} {lacking_words(document)}" if "yardstick" in document else ""
     why = document["why"]
     sentence = f"{document.get('found', '')} {why[:1].upper()}{why[1:]}; {outcome}.".strip()
-    refusals = Table.of("Tried and refused", document["refused"], "*what | *why")
+    refusals = Table.of("Tried and refused", document["refused"], "*what | *reason=why")
     return Summary(sentence, [errors, plain, refusals, *further], more)
