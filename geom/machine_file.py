@@ -27,6 +27,7 @@ from geom.importing.draft import Draft
 from geom.importing.dxf import read_section
 from geom.importing.motor_cad import read_motor_cad
 from geom.importing.pyleecan import read_pyleecan
+from geom.limits import MACHINE_BYTES
 from geom.plugins import plugins
 from geom.solids.step import machine_in_step
 from geom.solids.step_prisms import LARGEST_MM
@@ -59,7 +60,10 @@ def import_draft(
 def is_foreign_machine(path: Path) -> bool:
     """Is it a machine file of another program?  JSON is one of pyleecan where it names a class; else a recording."""
     suffix = path.suffix.lower()
-    return suffix in IMPORTERS and (suffix != ".json" or b'"__class__"' in path.read_bytes())
+    if suffix != ".json":
+        return suffix in IMPORTERS
+    with path.open("rb") as file:  # a recording may be a hundred times as large
+        return b'"__class__"' in file.read(MACHINE_BYTES.most)
 
 
 def library() -> dict[str, Path]:

@@ -84,6 +84,11 @@ def with_role(network: Network, *roles: Role) -> list[str]:
     return [p.name for p in solids(network) if role(network, p.name) in roles]
 
 
+def roleless(network: Network) -> list[str]:
+    """Solids of which nothing says what they are."""
+    return [p.name for p in solids(network) if role(network, p.name) is None]
+
+
 def turning(network: Network) -> list[str]:
     """Solids that turn, but for what insulates; where nothing is known to turn, all that are not known to stand."""
     names = [p.name for p in solids(network) if role(network, p.name) is not Role.INSULATION]
@@ -92,13 +97,12 @@ def turning(network: Network) -> list[str]:
 
 def cores(network: Network) -> list[str]:
     """Solids that carry the field in iron; where none is known, all whose role is not known."""
-    iron = with_role(network, Role.IRON, Role.ROTOR)
-    return iron or [p.name for p in solids(network) if role(network, p.name) is None]
+    return with_role(network, Role.IRON, Role.ROTOR) or roleless(network)
 
 
 def windings(network: Network) -> list[str]:
     """Solids that are wound; where none is known, all whose role is not known."""
-    return with_role(network, Role.WINDING) or [p.name for p in solids(network) if role(network, p.name) is None]
+    return with_role(network, Role.WINDING) or roleless(network)
 
 
 def bearings(network: Network) -> list[str]:

@@ -32,7 +32,7 @@ def yardstick_document(yard: Yardstick | None, comparison: Comparison, case: Cas
     of_file = {x.name for x in case.model.network.links}
     lacking = [
         s.document()
-        for s in suggested_effects(yard.terms, case, network)
+        for s in suggested_effects(yard.terms, case)
         if all(x.name in of_file for x in links_between(network, s.place, s.other))  # none was added
     ]
     return {"yardstick": {**yard.document(), "model_K": model_error(yard, comparison), "lacking": lacking, **words}}

@@ -18,7 +18,7 @@ from validation.effects import effect
 from validation.effects.during import During
 from validation.inference.decide import SURE
 from validation.inference.result import Candidate, Diagnosis
-from validation.parameters.unknowns import standing, with_model
+from validation.parameters.unknowns import with_model
 from validation.revision.revise import Revision, add, calibrate
 from validation.yardstick.suggestions import suggested_effects
 from validation.yardstick.words import NAMES, WORTH
@@ -218,7 +218,7 @@ def _added(
 
     refused : grows by what is tried and does not predict
     """
-    why = diagnosis.words
+    declined = ""
     for i in range(max(len(diagnosis.groups), 1)):
         choice = supervisor.offer(replace(diagnosis, groups=diagnosis.groups[i:], named=diagnosis.named[i:]))
         choice = tuple(c for c in choice if not _stands(case, c.effect))  # larger than it is: nothing to add
@@ -226,7 +226,7 @@ def _added(
             break
         name = supervisor.choose(diagnosis, choice)
         if name is None:
-            why = f"not added: {' or '.join(c.words for c in choice)}"
+            declined = f"not added: {' or '.join(c.words for c in choice)}"
             break
         for names in ((name,), needed_together(diagnosis, name)):
             if names and not any(_stands(case, one) for one in names):
@@ -234,10 +234,11 @@ def _added(
                 if step.accepted:
                     return step, evidence(diagnosis, next(c for c in choice if c.effect == name)), ""
                 refused.append(Refusal.of(names, step))
-                why = str(refused[0])
     further, document, more = further_step(case, supervisor, diagnosis, left_out, progress)
+    first = "" if declined or not refused else str(refused[0])
+    why = declined or first or diagnosis.words
     refused += more
-    others = len(refused) - (why == str(refused[0])) if refused else 0
+    others = len(refused) - bool(first)
     return further, document, f"{why}; {counted(others, 'other explanation')} did not predict either" if others else why
 
 
@@ -266,7 +267,7 @@ def further_step(
         likely = [o for o in diagnosis.odds if o.effects][:LIKELY]
         trials += [(o.effects, {"probability": o.probability, "verdict": diagnosis.verdict}) for o in likely]
     if free < left_out:
-        every = suggested_effects(yard.terms, case, standing(case))
+        every = suggested_effects(yard.terms, case)
         alone = [(s,) for s in every if s.effects] if free * WORTH < left_out else []
         for some in (tuple(s for s in every if s.effects), *alone):
             share = max((s.share for s in some), default=0.0)

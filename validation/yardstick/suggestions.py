@@ -11,7 +11,7 @@ from lumped.model.network import Link, Network, Source
 from measured.case import Case, Test
 from validation.effects import catalogue
 from validation.effects.input_terms import law_sentence
-from validation.parameters.unknowns import scene_of
+from validation.parameters.unknowns import scene_of, standing
 from validation.yardstick.network_terms import follows, input_term, inputs_of, largest_inputs, term_elements
 from validation.yardstick.terms import Term
 
@@ -50,17 +50,17 @@ class Suggestion:
         return {**vars(self), "words": self.words}
 
 
-def suggested_effects(terms: Sequence[Term], case: Case, standing: Network | None = None) -> tuple[Suggestion, ...]:
-    """Of the terms that a free network needs those that a network lacks, what carries most heat first.
+def suggested_effects(terms: Sequence[Term], case: Case) -> tuple[Suggestion, ...]:
+    """Of the terms that a free network needs those that the model as it stands lacks, what carries most heat first.
 
-    standing : the network with what was added to the case's; without it the case's.  Effects sit where the case's has
-        places for them, as `add` wants it: a link that was added is no place of its own
+    Effects sit where the case's network has places for them, as `add` wants it: a link that was added is no place of
+    its own.
     """
-    standing = standing or case.model.network
+    network = standing(case)
     groups: dict[tuple[str, ...], list[Term]] = {}
     for term in terms:
         groups.setdefault((term.kind, *sorted({term.place, term.other or term.place})), []).append(term)
-    every = (_suggestion([t for t in group if t.place == group[0].place], case, standing) for group in groups.values())
+    every = (_suggestion([t for t in group if t.place == group[0].place], case, network) for group in groups.values())
     return tuple(sorted((s for s in every if s), key=lambda s: -s.share))
 
 

@@ -12,7 +12,7 @@ from thermoscope.case_folder.stored_yardstick import yardstick_document
 from validation.calibration.calibrate import no_progress
 from validation.comparison.compare import errors
 from validation.effects import effect
-from validation.parameters.unknowns import scene_of, standing
+from validation.parameters.unknowns import scene_of
 from validation.revision.improvement import Step, Supervisor, best, ended, further_step
 from validation.yardstick.suggestions import suggested_effects
 from validation.yardstick.terms import Term
@@ -93,7 +93,7 @@ def test_no_effect_is_suggested_on_a_link_that_an_added_effect_brought(case):
     poorer = without(replace(case, tests=tuple(turning)), ("core", "body"))
     mended = replace(poorer, model=replace(poorer.model, effects=(AddedEffect("coupling", "body|core"),)))
     terms = (link("body", "core", "", 2.0), link("body", "core", "speed_rpm", 1.5))
-    (found,) = suggested_effects(terms, mended, standing(mended))
+    (found,) = suggested_effects(terms, mended)
     assert found.effects
     assert [effect(name, scene_of(mended)).name for name in found.starts] == list(found.starts)
 

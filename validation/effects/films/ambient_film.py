@@ -5,7 +5,7 @@ from typing import ClassVar
 
 from lumped.model.network import Network
 from lumped.model.quantities import AIR
-from lumped.model.sites import AXLE, ambient, outside, role, solids, turning, turns
+from lumped.model.sites import AXLE, ambient, outside, role, roleless, turning, turns
 from lumped.transfer.laws import Fixed, InputPower, Law, Power
 from lumped.transfer.laws import Radiation as FourthPower
 from validation.effects.base import Effect, Scene, with_parameter
@@ -62,7 +62,7 @@ class ConstantConvection(AmbientFilm):
     def candidate_places(cls, scene: Scene) -> list[str]:
         """Also where the drawing has no way to the ambient, and nobody says that it is inside: leaks, leads."""
         network = scene.network
-        bare = [p.name for p in solids(network) if p.kind == "node" and role(network, p.name) is None]
+        bare = [name for name in roleless(network) if network.places[name].kind == "node"]
         return list(dict.fromkeys([*outside(network), *bare])) if ambient(network) else []
 
 
