@@ -19,6 +19,7 @@ from lumped.transfer.laws import CLOCK, RUNNING
 from measured.doubt import USUAL, Doubt, Odds
 
 Role = Literal["calibrate", "validate", "hold-out"]
+GAP = 10.0  # usual steps: a logger that was silent for longer had stopped
 
 
 @dataclass(frozen=True)
@@ -40,6 +41,18 @@ class Channel:
     sigma_K: float = 0.5
     lag_s: float = 0.0
     model_K: float = 0.0
+
+
+def seconds_read(time: Array) -> float:
+    """Time (s) that readings stand for: what they count beside others, however often a logger writes.
+
+    time : (n,) s, of the readings alone: where nothing was read for long, only the first of it counts
+    """
+    if time.size < 2:
+        return 1.0
+    steps = np.diff(time)
+    usual = float(np.median(steps))
+    return usual + float(np.minimum(steps, GAP * usual).sum())
 
 
 @dataclass(frozen=True)

@@ -95,6 +95,7 @@ def documents() -> tuple[dict, dict]:
             "channel": p,
             "place": p,
             "n": 121,
+            "seconds": 7_200.0,
             "rmse_K": 5.07 if p == "flange.right" else 0.31,
             "bias_K": -4.21,
             "max_abs_K": 7.13,

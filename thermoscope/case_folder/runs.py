@@ -252,9 +252,9 @@ def finding_words(folder: Folder, errors: Mapping[str, Any]) -> str:
     first, step = (of((added[n] for n in names), key=lambda r: r.number) for of in (min, max))
     tests = [t for t in errors["tests"] if t["name"] in first.rmse_K.keys() & step.rmse_K.keys()]
     unseen = [t for t in tests if t["role"] == "hold-out"]
-    n = [sum(c["n"] for c in t["channels"]) for t in unseen or tests]
+    seconds = [sum(c["seconds"] for c in t["channels"]) for t in unseen or tests]
     each = [(first.rmse_K[t["name"]][0], step.rmse_K[t["name"]][0], t["rmse_K"]) for t in unseen or tests]
-    start, was, now = np.sqrt(np.average(np.square(each), axis=0, weights=n))
+    start, was, now = np.sqrt(np.average(np.square(each), axis=0, weights=seconds))
     error, test, name = max((c["rmse_K"], t["name"], c["channel"]) for t in errors["tests"] for c in t["channels"])
     limit = folder.limits(next(t for t in folder.case.tests if t.name == test))[name]
     verb, on = "Found" if now < was else "Added", "Held out" if unseen else "Error"

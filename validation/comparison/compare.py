@@ -13,7 +13,7 @@ from geom.table import Table, TableResult
 from geom.text import table
 from lumped.integration.runaway import checked_run
 from lumped.model.network import Network
-from measured.case import Case, Channel, Test
+from measured.case import Case, Channel, Test, seconds_read
 from measured.doubt import USUAL, Doubt
 from measured.sensors.operators import start_target
 from validation.comparison.predict import predict
@@ -32,12 +32,14 @@ class ChannelError:
     percent_of_rise : rmse over the largest rise measured in the test;  u_input_K, u_numeric_K : standard uncertainties
     fitted_rmse_K : the same with the biases, slopes, lags, starts and clocks of the fit; None before a fit
     limit_K : expanded uncertainty, see validation.comparison.uncertainty; None where only the errors were asked for
+    n, seconds : readings, and the time that they stand for: by it the errors of several sensors and tests are pooled
     verdict : "within" when rmse is no more than limit_K, "over" when it is, "unknown" without a limit
     """
 
     channel: str
     place: str
     n: int
+    seconds: float
     rmse_K: float
     bias_K: float
     max_abs_K: float
@@ -149,8 +151,7 @@ class Comparison(TableResult):
 
     @property
     def floor_K(self) -> float:
-        channels = [c for t in self.tests for c in t.channels]
-        return float(np.sqrt(np.average([c.sigma_K**2 for c in channels], weights=[c.n for c in channels])))
+        return pooled([replace(c, rmse_K=c.sigma_K) for t in self.tests for c in t.channels])
 
     @property
     def limits(self) -> dict[str, dict[str, float]]:
@@ -185,10 +186,10 @@ class Comparison(TableResult):
 
 
 def pooled(channels: Sequence[ChannelError]) -> float:
-    """Root mean square error (K) over all readings of several channels."""
+    """Root mean square error (K) of several channels, each counted by the time that it was read."""
     if not channels:
         return float("nan")
-    return float(np.sqrt(np.average([c.rmse_K**2 for c in channels], weights=[c.n for c in channels])))
+    return float(np.sqrt(np.average([c.rmse_K**2 for c in channels], weights=[c.seconds for c in channels])))
 
 
 def _fitted(channels: Sequence[ChannelError]) -> float | None:
@@ -290,15 +291,15 @@ def _checked(network: Network, test: Test, values: Mapping[str, float]) -> np.nd
 
 
 def _rows(test: Test, y: np.ndarray) -> list[ChannelError]:
-    return [channel_error(c, y[:, j]) for j, c in enumerate(test.channels) if np.isfinite(c.y).any()]
+    return [channel_error(c, test.time, y[:, j]) for j, c in enumerate(test.channels) if np.isfinite(c.y).any()]
 
 
 def _against(row: ChannelError, u: Uncertainty) -> ChannelError:
     return replace(row, limit_K=u.limit_K, u_input_K=u.input_K, u_numeric_K=u.numeric_K)
 
 
-def channel_error(channel: Channel, predicted: np.ndarray) -> ChannelError:
-    """The error of one sensor.  predicted : (n_time,) degC"""
+def channel_error(channel: Channel, time: np.ndarray, predicted: np.ndarray) -> ChannelError:
+    """The error of one sensor.  time : (n_time,) s;  predicted : (n_time,) degC"""
     read = np.isfinite(channel.y)
     e = channel.y[read] - predicted[read]
     rmse, rise = float(np.sqrt(np.mean(e**2))), rise_K(channel)
@@ -307,6 +308,7 @@ def channel_error(channel: Channel, predicted: np.ndarray) -> ChannelError:
         channel.name,
         channel.place,
         int(read.sum()),
+        seconds_read(time[read]),
         rmse,
         float(e.mean()),
         float(np.abs(e).max()),

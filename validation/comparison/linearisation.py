@@ -11,7 +11,7 @@ from geom.arrays import Array
 from lumped.integration.compiled import FIT
 from lumped.model.network import Network, Parameter
 from lumped.model.once import once
-from measured.case import Channel, Test
+from measured.case import Channel, Test, seconds_read
 from measured.doubt import USUAL
 from measured.sensors.blocks import INSTANTS, Blocks, groups
 from validation.comparison.predict import Watch
@@ -35,6 +35,11 @@ class Segment:
     J: Array
     sigma_K: float
     model_K: float = 0.0
+
+    @property
+    def seconds(self) -> float:
+        """The time that its readings stand for."""
+        return seconds_read(self.time)
 
     @property
     def weight(self) -> float:
@@ -116,5 +121,6 @@ def reach(parts: Sequence[Segment]) -> Array:
 
 
 def rmse(parts: Sequence[Segment]) -> float:
-    """Root mean square residual (K) over all channels and tests."""
-    return float(np.sqrt(np.mean(stacked(parts) ** 2))) if parts else float("nan")
+    """Root mean square residual (K) of all channels and tests, each counted by the time that it was read."""
+    squares = [np.mean(s.r**2) for s in parts]
+    return float(np.sqrt(np.average(squares, weights=[s.seconds for s in parts]))) if parts else float("nan")

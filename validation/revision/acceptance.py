@@ -63,14 +63,14 @@ class Fold:
 class FoldPrediction:
     """How well a fold was predicted.
 
-    nats : log density of its readings;  square_K2, count : sum of their squared errors, of so many
-    no_change_K2 : the same sum where every sensor stays as it began
+    nats : log density of its readings;  square_K2s, seconds : their squared errors over the time that they stand for
+    no_change_K2s : the same where every sensor stays as it began
     """
 
     nats: float
-    square_K2: float
-    no_change_K2: float
-    count: int
+    square_K2s: float
+    no_change_K2s: float
+    seconds: float
 
 
 def folds(
@@ -160,13 +160,13 @@ def fold_prediction(fit: Fit, fold: Fold, fixed: Mapping[str, float], effects: C
     return FoldPrediction(nats, *squares(segments(fit.network, fold.predicted, values), fold))
 
 
-def squares(parts: Sequence[Segment], fold: Fold) -> tuple[float, float, int]:
-    """Sum of squared errors of a fold's predicted tests, the same where nothing changes (K2), and of how many."""
+def squares(parts: Sequence[Segment], fold: Fold) -> tuple[float, float, float]:
+    """Squared errors of a fold's predicted tests over time, the same where nothing changes (K2 s); and that time."""
     both = [(t.name, c) for t in (*fold.predicted, *fold.fitted) for c in t.channels if np.isfinite(c.y).any()]
     first = {(name, c.name): c.y[np.isfinite(c.y)][0] for name, c in both}
     read = {(t.name, c.name): c.y for t in fold.predicted for c in t.channels}
-    still = sum(s.r.size * np.nanmean((read[s.test, s.channel] - first[s.test, s.channel]) ** 2) for s in parts)
-    return sum(float(s.r @ s.r) for s in parts), float(still), sum(s.r.size for s in parts)
+    still = sum(s.seconds * np.nanmean((read[s.test, s.channel] - first[s.test, s.channel]) ** 2) for s in parts)
+    return sum(s.seconds * float(np.mean(s.r**2)) for s in parts), float(still), sum(s.seconds for s in parts)
 
 
 def _rows(fit: Fit, tests: Sequence[Test]) -> list[tuple[Segment, Array]]:
@@ -228,7 +228,7 @@ def prediction_checks(
     only = f"; seen in {telling[0]} only, judged on its later part: not yet tested elsewhere" if part else ""
     parts = f"; of {', '.join(lone)} the later part, since only it tells what held in it" if lone and not part else ""
     words = f"each part left out and predicted from the others: {fall(was, now)}, {better}{only}{parts}"
-    none = float(np.sqrt(sum(f.no_change_K2 for f in after) / sum(f.count for f in after)))
+    none = float(np.sqrt(sum(f.no_change_K2s for f in after) / sum(f.seconds for f in after)))
     return (
         Check("left out", sum(nats) > gain and now <= worst, sum(nats), gain, words, part),
         Check("no change", now < none, now, none, f"{now:.2f} K where a guess of no change leaves {none:.2f} K", part),
@@ -237,7 +237,7 @@ def prediction_checks(
 
 def rms(folds: Sequence[FoldPrediction]) -> float:
     """Root mean square error (K) of what was left out."""
-    return float(np.sqrt(sum(f.square_K2 for f in folds) / max(sum(f.count for f in folds), 1)))
+    return float(np.sqrt(sum(f.square_K2s for f in folds) / max(sum(f.seconds for f in folds), 1.0)))
 
 
 def bound_check(fit: Fit, name: str) -> Check:

@@ -63,7 +63,7 @@ TOGETHER = " + "  # between the names of effects that are added in one step
 class Change:
     """Error of one test (K) before and after; `fitted` with sensors as the fit has them, None before a fit.
 
-    readings : of all its sensors, by which the error of several tests weighs them where it is told
+    seconds : that all its sensors were read, by which the error of several tests weighs them where it is told
     """
 
     name: str
@@ -72,7 +72,7 @@ class Change:
     after: float
     fitted_before: float | None = None
     fitted_after: float | None = None
-    readings: int = 1
+    seconds: float = 1.0
 
     def document(self) -> dict:
         return {
@@ -233,7 +233,7 @@ def _revised(
     after = errors(replace(case, model=new))
     new = replace(new, reference=replace(reference, errors=after.sensor_errors))
     changes = tuple(
-        Change(b.name, b.role, b.rmse_K, a.rmse_K, b.fitted_rmse_K, a.fitted_rmse_K, sum(c.n for c in a.channels))
+        Change(b.name, b.role, b.rmse_K, a.rmse_K, b.fitted_rmse_K, a.fitted_rmse_K, sum(c.seconds for c in a.channels))
         for b, a in zip(before.tests, after.tests, strict=True)
     )
     sure = [_sure(fit, tests, new, case) for fit in fits]
@@ -338,19 +338,19 @@ def _fit_checks(case: Case, fit: Fit, new: Model, changes: Sequence[Change]) -> 
     """
     previous = {t.name for t in case.fitted} if case.model.values else set()
     fitted = [t for t in case.usable if t.name in {s.test for s in fit.parts}]
-    values, square, count = parameter_values(fit.network, new.values), np.zeros(2), 0
+    values, square, seconds = parameter_values(fit.network, new.values), np.zeros(2), 0.0
     effects = [e.name for e in case.model.effects if e.name in fit.unknowns.names]
     blind = [(f, fold_prediction(fit, f, values, effects)) for f in folds(fitted, (), lone=lone_tests(fit, effects))]
     for fold, now in blind:
         if not previous & {t.name for t in fold.predicted}:
-            was, _, n = squares(segments(standing(case), fold.predicted, case.model.values), fold)
-            square += np.array([was, now.square_K2])
-            count += n
+            was, _, span = squares(segments(standing(case), fold.predicted, case.model.values), fold)
+            square += np.array([was, now.square_K2s])
+            seconds += span
     changed = [c for c in changes if c.role in TRAINING and isfinite(c.before)]
     mine = [c for c in changed if c.name in {t.name for t in fitted}]
     unseen = [c for c in changed if c not in mine and c.name not in previous]
     groups = {kind: some for kind, some in (("unseen", unseen), (FITTED, mine)) if some}
-    pairs = {"left out": np.sqrt(square / count)} if count else {}
+    pairs = {"left out": np.sqrt(square / seconds)} if seconds else {}
     pairs |= {k: np.array([mean_square(some, "before"), mean_square(some, "after")]) for k, some in groups.items()}
     sigma = float(np.sqrt(np.mean([c.sigma_K**2 for t in fitted for c in t.channels])))
     which = {
@@ -362,23 +362,23 @@ def _fit_checks(case: Case, fit: Fit, new: Model, changes: Sequence[Change]) -> 
         Check(kind, bool(b <= max(GETS_WORSE * a, sigma)), float(b), float(a), f"{which[kind]}: {fall(a, b)}")
         for kind, (a, b) in pairs.items()
     ]
-    sums = {which["left out"]: [(now.square_K2, now.no_change_K2, now.count) for _, now in blind]}
+    sums = {which["left out"]: [(now.square_K2s, now.no_change_K2s, now.seconds) for _, now in blind]}
     sums |= {which[kind]: [_as_read(replace(case, model=new), some)] for kind, some in groups.items()}
     return (*checks, _no_change(sums, sigma))
 
 
-def _as_read(case: Case, changes: Sequence[Change]) -> tuple[float, float, int]:
-    """Sum of squared errors (K2) of some tests, sensors as they read; the same where nothing changes; of how many."""
+def _as_read(case: Case, changes: Sequence[Change]) -> tuple[float, float, float]:
+    """Squared errors of tests over time (K2 s), sensors as they read; the same where nothing changes; and that time."""
     tests = tuple(t for t in case.usable if t.name in {c.name for c in changes})
     return squares(segments(standing(case), tests, physical(case)), Fold((), tests))
 
 
-def _no_change(sums: Mapping[str, Sequence[tuple[float, float, int]]], sigma: float) -> Check:
+def _no_change(sums: Mapping[str, Sequence[tuple[float, float, float]]], sigma: float) -> Check:
     """Of what a guess of no change predicts better than a fit by most, or nearly does.
 
-    sums : what was predicted -> sums of squared errors of the fit and of that guess (K2), of how many
+    sums : what was predicted -> squared errors of the fit and of that guess over time (K2 s), and that time (s)
     """
-    each = {what: np.sqrt(np.sum(rows, axis=0)[:2] / sum(n for *_, n in rows)) for what, rows in sums.items()}
+    each = {what: np.sqrt(np.sum(rows, axis=0)[:2] / sum(span for *_, span in rows)) for what, rows in sums.items()}
     what, (error, none) = max(each.items(), key=lambda x: x[1][0] / max(x[1][1], sigma))
     words = f"{what}: {error:.2f} K where a guess of no change leaves {none:.2f} K"
     return Check("no change", bool(error <= max(none, sigma)), float(error), float(none), words)
@@ -461,7 +461,7 @@ def other_changes(changes: Sequence[Change], fitted: Collection[str]) -> list[st
     if not outside:
         return ["no held-out test"]
     called = "held-out tests" if all(c.role == "hold-out" for c in outside) else "other tests"
-    was, now = (mean_square(outside, side, [c.readings for c in outside]) for side in ("before", "after"))
+    was, now = (mean_square(outside, side, [c.seconds for c in outside]) for side in ("before", "after"))
     change = f"{called} {fall(was, now)}"
     worst = max(outside, key=lambda c: c.after - c.before)
     return [
@@ -469,6 +469,6 @@ def other_changes(changes: Sequence[Change], fitted: Collection[str]) -> list[st
     ]
 
 
-def mean_square(changes: Sequence[Change], side: str, weights: Sequence[int] | None = None) -> float:
+def mean_square(changes: Sequence[Change], side: str, weights: Sequence[float] | None = None) -> float:
     values = [getattr(c, side) for c in changes]
     return float(np.sqrt(np.average(np.square(values), weights=weights))) if values else float("nan")

@@ -29,6 +29,6 @@ def usual_rise(records: Sequence[Record], boundary: int | None) -> Persistence:
     """The model of some records."""
     if boundary is None:
         return Persistence(None, np.empty(0))
-    rise = np.concatenate([np.where(r.read, r.T - r.boundary[:, [boundary]], np.nan) for r in records])
-    count = np.maximum(np.isfinite(rise).sum(axis=0), 1)
-    return Persistence(boundary, np.nansum(rise, axis=0) / count)
+    each = [np.where(r.read, r.T - r.boundary[:, [boundary]], 0.0).sum(axis=0) * r.step for r in records]
+    read = [r.read.sum(axis=0) * r.step for r in records]
+    return Persistence(boundary, np.sum(each, axis=0) / np.maximum(np.sum(read, axis=0), 1e-300))

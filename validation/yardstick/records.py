@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from geom.arrays import Array
-from measured.case import Test
+from measured.case import Test, seconds_read
 
 MOST_ROWS = 40_000  # of all tests together: twice as many teach little more and double the wait
 MOST_WORK = 1e11  # multiplications of all fits together: some 20 s on one core
@@ -50,10 +50,14 @@ class Record:
     boundary: Array
     u: Array
 
+    @property
+    def step(self) -> float:
+        """Usual time between its rows (s): what each counts beside those of other tests."""
+        return seconds_read(self.time) / len(self.time)
+
     def rows(self, window: float) -> int:
         """Rows of a window (s): at least one, and at most a third of all."""
-        step = float(np.median(np.diff(self.time)))
-        return int(np.clip(round(window / step), 1, max((len(self.time) - 1) // 3, 1)))
+        return int(np.clip(round(window / self.step), 1, max((len(self.time) - 1) // 3, 1)))
 
     def stretch(self, begin: int, end: int) -> Record:
         """The rows from begin to end as a record of their own."""

@@ -147,7 +147,8 @@ def yardstick(case: Case) -> Yardstick | None:
     errors = {kind: [*left, *(error_of(models[kind], r) for r in unseen)] for kind, (_, left) in which.items()}
 
     def pooled(rows: Sequence[int], columns: Sequence[int] | slice = slice(None)) -> dict[str, float]:
-        return {kind: rms([of[i][:, columns] for i in rows]) for kind, of in errors.items()}
+        steps = [(*records, *unseen)[i].step for i in rows]
+        return {kind: rms([of[i][:, columns] for i in rows], steps) for kind, of in errors.items()}
 
     names = [r.name for r in (*records, *unseen)]
     learnt, unseen_numbers = range(len(records)), range(len(records), len(names))
@@ -195,13 +196,13 @@ def persistence_error(case: Case) -> tuple[float, tuple[str, ...]] | None:
     if prepared is None:
         return None
     folds, columns = prepared
-    return rms(_best(_persistences(folds, columns), folds)[1]), columns.sensors
+    return rms(_best(_persistences(folds, columns), folds)[1], _steps(folds)), columns.sensors
 
 
 def free_network_error(case: Case) -> tuple[float, tuple[str, ...]] | None:
     """The same of a free network."""
     learnt = _free_network(case)
-    return learnt and (rms(learnt[2][1]), learnt[1].sensors)
+    return learnt and (rms(learnt[2][1], _steps(learnt[0])), learnt[1].sensors)
 
 
 def best_free_network(folds: Sequence[Sequence[Record]], columns: Columns) -> Form:
@@ -254,13 +255,13 @@ def _free_networks(
 
 def _best(fitters: Sequence[Fitter], folds: Sequence[Sequence[Record]]) -> tuple[Fitter, list[Array]]:
     """The one that predicts best what was left out, with its errors there, record by record."""
-    every = range(len(folds))
+    every, steps = range(len(folds)), _steps(folds)
 
     def left_out(fit: Fitter) -> list[Array]:
         models = [fit([j for j in every if j != i]) for i in every]
         return [error_of(model, r) for model, fold in zip(models, folds, strict=True) for r in fold]
 
-    return min(((fit, left_out(fit)) for fit in fitters), key=lambda pair: rms(pair[1]))
+    return min(((fit, left_out(fit)) for fit in fitters), key=lambda pair: rms(pair[1], steps))
 
 
 def error_of(model: Plain, record: Record) -> Array:
@@ -268,6 +269,12 @@ def error_of(model: Plain, record: Record) -> Array:
     return np.where(record.read, record.T - model.run(record), np.nan)
 
 
-def rms(errors: Sequence[Array]) -> float:
-    every = np.concatenate([e[~np.isnan(e)] for e in errors])
-    return float(np.sqrt(np.mean(every**2))) if every.size else float("nan")
+def _steps(folds: Sequence[Sequence[Record]]) -> list[float]:
+    return [record.step for fold in folds for record in fold]
+
+
+def rms(errors: Sequence[Array], steps: Sequence[float] = (1.0,)) -> float:
+    """Root mean square error (K); NaN of none.  steps : (n_record,) s, what a row of each counts"""
+    seconds = [step * np.count_nonzero(~np.isnan(e)) for e, step in zip(errors, steps, strict=True)]
+    squares = [step * np.nansum(e**2) for e, step in zip(errors, steps, strict=True)]
+    return float(np.sqrt(np.sum(squares) / np.sum(seconds))) if np.any(seconds) else float("nan")

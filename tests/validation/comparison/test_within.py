@@ -97,10 +97,13 @@ def test_the_rule_is_said_where_it_is_used():
 
 
 def test_one_rms_of_a_test():
-    """Over all readings: a sensor read twice as often counts twice."""
+    """Over all time that was read: half as many readings of the same hour count as much, half an hour counts half."""
     one = measured().channels[0]
     few = replace(one, y=np.where(np.arange(len(one.y)) % 2, np.nan, one.y))
-    a, b = channel_error(one, one.y - 1.0), channel_error(few, one.y - 2.0)
+    time = measured().time
+    short = replace(one, y=np.where(2 * np.arange(len(one.y)) < len(one.y), one.y, np.nan))
+    a, b = channel_error(one, time, one.y - 1.0), channel_error(few, time, one.y - 2.0)
+    c = channel_error(short, time, one.y - 2.0)
     both = Errors("two", 0, (), (compare(case()).tests[0],))
-    pooled = replace(both.tests[0], channels=(a, b)).rmse_K
-    assert pooled == pytest.approx(np.sqrt((a.n * 1.0 + b.n * 4.0) / (a.n + b.n)))
+    pooled = [replace(both.tests[0], channels=of).rmse_K for of in ((a, b), (a, c))]
+    assert pooled == pytest.approx([np.sqrt((1.0 + 4.0) / 2.0), np.sqrt((2.0 * 1.0 + 4.0) / 3.0)], rel=0.02)

@@ -16,7 +16,7 @@ from validation.inference.result import Candidate, Diagnosis
 from validation.revision.revise import Change, Revision
 from viz import Report
 
-ERROR = ChannelError("T_<b>", "flange", 10, 5.07, -4.0, 7.0, 0.5, 9.0, 1.0)
+ERROR = ChannelError("T_<b>", "flange", 10, 600.0, 5.07, -4.0, 7.0, 0.5, 9.0, 1.0)
 COMPARED = Comparison("road", 2, ("x@y",), (TestError("road-2", "hold-out", (ERROR,)),))
 FOUND = Candidate("convection@flange", 31.4, 7.9, 12.3, "W/K", (10.0, 14.0), "named")
 
