@@ -81,7 +81,7 @@ def test_a_test_left_out_is_predicted_by_a_fit_to_the_other():
     follows = minimise(fit.network, fold.fitted, Unknowns((LOSS,)), np.zeros(1), FOLLOWED)
     (left,) = segments(fit.network, fold.predicted, follows.values)
     found = fold_prediction(fit, fold, {})
-    assert found.square_K2 / found.count == pytest.approx(np.mean(left.r**2), rel=1e-3)
+    assert found.square_K2s / found.seconds == pytest.approx(np.mean(left.r**2), rel=1e-3)
     assert found.nats == pytest.approx(density, rel=1e-3, abs=0.05)
 
 
@@ -101,7 +101,7 @@ def test_no_change_is_the_first_reading_of_the_test_not_of_its_half():
     (fit, _) = both([test])
     found = fold_prediction(fit, folds([test], [])[0], {})
     y = second.channels[0].y
-    assert found.no_change_K2 / found.count == pytest.approx(np.nanmean((y - test.channels[0].y[0]) ** 2), rel=1e-6)
+    assert found.no_change_K2s / found.seconds == pytest.approx(np.nanmean((y - test.channels[0].y[0]) ** 2), rel=1e-6)
 
 
 def test_a_calibration_that_only_its_own_test_gains_by_is_kept_for_that():

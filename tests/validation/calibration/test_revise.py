@@ -118,6 +118,7 @@ def test_comparison_document():
         "channel",
         "place",
         "n",
+        "seconds",
         "rmse_K",
         "bias_K",
         "max_abs_K",

@@ -8,6 +8,7 @@ from scipy.optimize import lsq_linear
 from two_bodies import bench
 
 from measured.case import Test
+from validation.comparison.compare import errors
 from validation.yardstick.free_network import nonnegative
 from validation.yardstick.yardstick import KINDS, yardstick
 
@@ -91,6 +92,16 @@ def test_half_the_rows_say_the_same(sound, measure):
     half = yardstick(replace(sound, tests=tuple(thinned(t) for t in sound.tests)))
     assert half.hold_out["persistence"] == pytest.approx(measure.hold_out["persistence"], rel=0.02)
     assert half.hold_out["free_network"] == pytest.approx(measure.hold_out["free_network"], abs=0.1)
+
+
+def test_a_test_counts_by_its_time_not_by_its_rows(sound):
+    """One of two tests in a quarter of the instants: what both leave together is the same."""
+    mild, wild = sound.tests[0], sound.tests[1]
+    far = tuple(replace(c, y=c.y + 30.0 * (mild.time > mild.time[0])) for c in wild.channels)
+    both = replace(sound, tests=(mild, replace(wild, channels=far)))
+    fewer = replace(sound, tests=(thinned(thinned(mild)), both.tests[1]))
+    assert yardstick(fewer).left_out["persistence"] == pytest.approx(yardstick(both).left_out["persistence"], rel=0.02)
+    assert errors(fewer).rmse_K == pytest.approx(errors(both).rmse_K, rel=0.02)
 
 
 def test_the_only_test_is_judged_by_its_thirds(sound):
