@@ -27,7 +27,7 @@ from validation.yardstick.yardstick import yardstick
 Progress = Callable[[str], None]
 Trial = tuple[tuple[str, ...], dict[str, float | str]]  # effects, and what speaks for them
 LEAST = 0.005  # K, a rise that two digits show
-LIKELY = 3  # sets tried where the diagnosis gives no name: each costs a fit, and the criterion decides
+LIKELY = 3  # sets tried where no name was added: each costs a fit, and the criterion decides
 LINE = 60  # letters of a verdict that a line of progress has room for
 MOST = 6  # effects at a time: more are a reason to look at the model
 
@@ -80,12 +80,13 @@ class Step:
 class Refusal:
     """What was tried and why it does not stand, in words."""
 
+    effects: Sequence[str]
     what: str
     why: str
 
     @classmethod
     def of(cls, names: Sequence[str], step: Revision) -> Refusal:
-        return cls(" and ".join(effect(name).statement for name in names), step.why)
+        return cls(tuple(names), " and ".join(effect(name).statement for name in names), step.why)
 
     def __str__(self) -> str:
         return f"not accepted: {self.what}, as {self.why}"
@@ -148,7 +149,13 @@ def singletons(diagnosis: Diagnosis, choice: Sequence[Candidate]) -> str | None:
     """
     first = effect(choice[0].effect)
     sure = choice[0].probability >= SURE or (len(choice) == 1 and diagnosis.verdict in ("named", "several"))
-    return first.name if sure and (not first.fault or isinstance(first, During)) else None
+    return first.name if sure and _unasked(first.name) else None
+
+
+def _unasked(name: str) -> bool:
+    """May it be added by what it predicts? What a sensor did in one test may; that it always reads wrong is asked."""
+    of = effect(name)
+    return not of.fault or isinstance(of, During)
 
 
 def best(diagnosis: Diagnosis, choice: Sequence[Candidate]) -> str:
@@ -234,10 +241,9 @@ def _added(
                 if step.accepted:
                     return step, evidence(diagnosis, next(c for c in choice if c.effect == name)), ""
                 refused.append(Refusal.of(names, step))
-    further, document, more = further_step(case, supervisor, diagnosis, left_out, progress)
     first = "" if declined or not refused else str(refused[0])
+    further, document = further_step(case, supervisor, diagnosis, left_out, refused, progress)
     why = declined or first or diagnosis.words
-    refused += more
     others = len(refused) - bool(first)
     return further, document, f"{why}; {counted(others, 'other explanation')} did not predict either" if others else why
 
@@ -249,24 +255,31 @@ def _stands(case: Case, name: str) -> bool:
 
 
 def further_step(
-    case: Case, supervisor: Supervisor, diagnosis: Diagnosis, left_out: float, progress: Progress
-) -> tuple[Revision | None, Mapping[str, float | str], list[Refusal]]:
-    """What else is accepted where the diagnosis offers nothing that is; or None, and what was refused.
+    case: Case,
+    supervisor: Supervisor,
+    diagnosis: Diagnosis,
+    left_out: float,
+    refused: list[Refusal],
+    progress: Progress,
+) -> tuple[Revision | None, Mapping[str, float | str]]:
+    """What else is accepted where the diagnosis offers nothing that is; or None.
 
-    Where plain models are better by more than a tenth: the likeliest sets, if no name was given. Then all that a free
-    network has and the model lacks, in one step, since terms that need each other are worth nothing alone; then each.
+    Where plain models are better by more than a tenth: the likeliest sets, of what cannot be told apart the likelier.
+    Where a free network is not worse by more than that: all that it has and the model lacks, in one step, since terms
+    that need each other are worth nothing alone. Where it is better by more than that: each of them, too.
 
     left_out : error (K) of the model on tests left out in turn
+    refused : what was tried before, which is not tried again; grows by what is
     """
     yard = yardstick(case) if supervisor.suggest else None
     if yard is None:
-        return None, {}, []
+        return None, {}
     best, free = min(yard.left_out.values()), yard.left_out["free_network"]
-    refused, trials = list[Refusal](), list[Trial]()
-    if best * WORTH < left_out and not diagnosis.groups:
-        likely = [o for o in diagnosis.odds if o.effects][:LIKELY]
+    trials, before = list[Trial](), {frozenset(r.effects) for r in refused}
+    if best * WORTH < left_out:
+        likely = [o for o in diagnosis.odds if o.effects and all(map(_unasked, o.effects))][:LIKELY]
         trials += [(o.effects, {"probability": o.probability, "verdict": diagnosis.verdict}) for o in likely]
-    if free < left_out:
+    if free < WORTH * left_out:
         every = suggested_effects(yard.terms, case)
         alone = [(s,) for s in every if s.effects] if free * WORTH < left_out else []
         for some in (tuple(s for s in every if s.effects), *alone):
@@ -274,11 +287,13 @@ def further_step(
             words = ", ".join(s.words for s in some)
             trials.append((tuple(n for s in some for n in s.effects), {"free network": words, "share": share}))
     for names, document in {names: document for names, document in trials if names}.items():
-        step = None if any(_stands(case, one) for one in names) else _present(case, names, progress)
-        if step and step.accepted:
-            return step, document, refused
-        refused += [Refusal.of(names, step)] if step else []
-    return None, {}, refused
+        if frozenset(names) in before or any(_stands(case, one) for one in names):
+            continue
+        step = _present(case, names, progress)
+        if step.accepted:
+            return step, document
+        refused.append(Refusal.of(names, step))
+    return None, {}
 
 
 def _present(case: Case, names: Sequence[str], progress: Progress) -> Revision:

@@ -46,7 +46,7 @@ def test_what_was_added_is_told_as_a_law_with_its_interval():
 
 def test_terms_that_need_each_other_are_added_in_one_step():
     some = case(bench(pumped=0.7), bench("one"))
-    step, evidence, _ = further_step(some, Supervisor(best, suggest=True), SILENT, 9.0, no_progress)
+    step, evidence = further_step(some, Supervisor(best, suggest=True), SILENT, 9.0, [], no_progress)
     assert step.effect == "loss.input@two|heater2 at 100 + conductance.input@two|ambient|pump at 3000"
     assert step.accepted
     assert "two to ambient" in evidence["free network"]

@@ -13,7 +13,7 @@ from validation.calibration.calibrate import no_progress
 from validation.comparison.compare import errors
 from validation.effects import effect
 from validation.parameters.unknowns import scene_of
-from validation.revision.improvement import Step, Supervisor, best, ended, further_step
+from validation.revision.improvement import Refusal, Step, Supervisor, best, ended, further_step
 from validation.yardstick.suggestions import suggested_effects
 from validation.yardstick.terms import Term
 from validation.yardstick.yardstick import yardstick
@@ -106,15 +106,18 @@ def test_per_capacity_there_is_no_start(case):
 def test_improve_adds_what_a_free_network_has_where_the_diagnosis_names_nothing(case):
     """The film that was left out is accepted, with the words of the free network as its evidence."""
     poorer = without(case, ("body", "ambient"))
-    step, evidence, tried = further_step(poorer, Supervisor(best, suggest=True), SILENT, 9.0, no_progress)
-    assert step is not None, tried
+    refused = []
+    step, evidence = further_step(poorer, Supervisor(best, suggest=True), SILENT, 9.0, refused, no_progress)
+    assert step is not None, refused
     assert step.accepted
     assert evidence["free network"].startswith("body to ambient: ")
-    assert further_step(poorer, Supervisor(best), SILENT, 9.0, no_progress) == (None, {}, [])
+    assert further_step(poorer, Supervisor(best), SILENT, 9.0, refused, no_progress) == (None, {})
 
 
 def test_nothing_is_suggested_where_the_model_predicts_as_well_as_a_free_network(case):
-    assert further_step(case, Supervisor(best, suggest=True), SILENT, 0.01, no_progress) == (None, {}, [])
+    refused = []
+    assert further_step(case, Supervisor(best, suggest=True), SILENT, 0.01, refused, no_progress) == (None, {})
+    assert not refused
 
 
 def test_every_end_says_how_near_the_best_plain_model_is_or_what_stops_it(case):
@@ -135,14 +138,29 @@ def test_every_end_says_how_near_the_best_plain_model_is_or_what_stops_it(case):
     assert end(short).why.startswith("nothing is offered; no plain model can be learnt from these tests")
 
 
-def test_where_no_name_is_given_the_likeliest_sets_are_tried_and_the_criterion_decides(case):
+@pytest.mark.parametrize("groups", [(), (("convection.constant@body", "convection.buoyant@body"),)])
+def test_where_no_name_was_added_the_likeliest_sets_are_tried_and_the_criterion_decides(case, groups):
+    """No name was given, or two that cannot be told apart and nobody to ask."""
     poorer = without(case, ("body", "ambient"))
     odds = [
         SimpleNamespace(effects=(n,), probability=p) for n, p in (("mass@core", 0.6), ("convection.constant@body", 0.3))
     ]
-    said = SimpleNamespace(groups=(), odds=(SimpleNamespace(effects=(), probability=0.1), *odds), verdict="outside")
-    step, evidence, _ = further_step(poorer, Supervisor(best, suggest=True), said, 9.0, no_progress)
+    sensor = SimpleNamespace(effects=("sensor.gain@T_body",), probability=0.05)  # asked for, whatever it predicts
+    odds = (SimpleNamespace(effects=(), probability=0.1), sensor, *odds)
+    said = SimpleNamespace(groups=groups, odds=odds, verdict="outside")
+    refused = []
+    step, evidence = further_step(poorer, Supervisor(best, suggest=True), said, 9.0, refused, no_progress)
     assert (step.effect, step.accepted, evidence["probability"]) == ("convection.constant@body", True, 0.3)
+    assert [r.effects for r in refused] == [("mass@core",)]
+
+
+def test_what_did_not_predict_is_not_tried_again(case):
+    poorer = without(case, ("body", "ambient"))
+    odds = (SimpleNamespace(effects=("mass@core",), probability=0.6),)
+    said = SimpleNamespace(groups=(), odds=odds, verdict="outside")
+    refused = [Refusal(("mass@core",), "more heat capacity", "it was worse")]
+    further_step(poorer, Supervisor(best, suggest=True), said, 9.0, refused, no_progress)
+    assert [r.effects for r in refused].count(("mass@core",)) == 1
 
 
 def test_what_was_tried_last_is_a_table_and_one_clause_of_the_sentence(case):
@@ -150,7 +168,8 @@ def test_what_was_tried_last_is_a_table_and_one_clause_of_the_sentence(case):
     poorer = without(case, ("body", "ambient"))
     odds = [SimpleNamespace(effects=(f"{kind}@core",), probability=0.2) for kind in ("mass", "loss.constant")]
     said = SimpleNamespace(groups=(), odds=tuple(odds), verdict="outside")
-    _, _, refused = further_step(poorer, Supervisor(best, suggest=True), said, 9.0, no_progress)
+    refused = []
+    further_step(poorer, Supervisor(best, suggest=True), said, 9.0, refused, no_progress)
     assert [r.what for r in refused] == [effect(o.effects[0]).statement for o in odds][: len(refused)]
     assert all(str(r) == f"not accepted: {r.what}, as {r.why}" for r in refused)
     assert refused
