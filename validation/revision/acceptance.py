@@ -221,7 +221,7 @@ def prediction_checks(
     """
     nats = [b.nats - a.nats for b, a in zip(after, before, strict=True)]
     was, now = rms(before), rms(after)
-    gain, worst = (-GAIN, SAME * was) if aside else (GAIN, was)
+    gain = -GAIN if aside else GAIN
     short = f" where {GAIN:.3g} would do" if 0.0 < sum(nats) <= gain else ""
     better = f"better in {sum(x > 0 for x in nats)} of {len(nats)}, log odds {sum(nats):+.3g} in all{short}"
     part = len(telling) == 1
@@ -230,7 +230,7 @@ def prediction_checks(
     words = f"each part left out and predicted from the others: {fall(was, now)}, {better}{only}{parts}"
     none = float(np.sqrt(sum(f.no_change_K2s for f in after) / sum(f.seconds for f in after)))
     return (
-        Check("left out", sum(nats) > gain and now <= worst, sum(nats), gain, words, part),
+        Check("left out", sum(nats) > gain and now <= SAME * was, sum(nats), gain, words, part),
         Check("no change", now < none, now, none, f"{now:.2f} K where a guess of no change leaves {none:.2f} K", part),
     )
 
