@@ -84,7 +84,7 @@ from lumped.model.multipliers import (
     values_of as values_of,
 )
 from lumped.model.network import Link as Link, Place as Place, Row as Row, Source as Source
-from lumped.model.quantities import AIR as AIR, LIQUID as LIQUID, USUAL as USUAL_QUANTITIES
+from lumped.model.quantities import FLOWS as FLOWS, LIQUID as LIQUID, USUAL as USUAL_QUANTITIES
 from lumped.model.sites import ambient as ambient
 from lumped.numerics import stages as stages
 from lumped.numerics.instant import instant as instant

@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 from thermoscope import InputError, Network
 from thermoscope import plugin as th
 
-MOVING = ("speed", "vehicle_speed", th.AIR)  # what moves air
+MOVING = ("speed", *th.FLOWS)  # what moves air
 
 
 @dataclass(frozen=True)
@@ -97,8 +97,8 @@ def coolant_boundaries(network: Network) -> tuple[str, ...]:
 
 
 def flows(network: Network, inputs: Mapping[str, float]) -> tuple[str, ...]:
-    """Inputs that are a flow of air or liquid."""
-    return tuple(n for n in inputs if network.measures(n) in (th.AIR, th.LIQUID))
+    """Inputs that are a flow of air or liquid, or a share of one."""
+    return tuple(n for n in inputs if network.measures(n) in set(th.FLOWS) - {"vehicle_speed"})
 
 
 def at_altitude(network: Network, altitude_m: float) -> Network:

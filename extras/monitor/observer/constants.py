@@ -16,7 +16,7 @@ import numpy as np
 from thermoscope import Network, Parameter
 from thermoscope import plugin as th
 
-MOVING = ("speed", "vehicle_speed", th.AIR, th.LIQUID)
+MOVING = ("speed", *th.FLOWS)
 FARTHEST = 1.5  # of a logarithm: beyond, a tangent says nothing
 LEARNED = "learned:"
 

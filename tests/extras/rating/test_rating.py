@@ -135,10 +135,11 @@ def test_derating_over_ambient_and_altitude():
     assert_allclose(density(4000.0), 61660.0 / 101325.0, rtol=1e-4)  # at one temperature: US Standard Atmosphere 1976
 
 
-def test_blown_films_thin_more():
-    blown = InputPower(G, (("speed_rpm", 1000.0, 0.8),))
+@pytest.mark.parametrize("moving", ["speed_rpm", "vehicle_speed_mps", "fan_flow_m3h", "flow_percent"])
+def test_blown_films_thin_more(moving):
+    blown = InputPower(G, ((moving, 1000.0, 0.8),))
     thin = at_altitude(body(blown), 2000.0)
-    T = steady(thin, {"current_A": 100.0, "speed_rpm": 1000.0}, {"air": AIR})["body"]
+    T = steady(thin, {"current_A": 100.0, moving: 1000.0}, {"air": AIR})["body"]
     assert_allclose(T - AIR, R * 100.0**2 / (G * density(2000.0) ** 0.8), rtol=1e-6)
 
 
