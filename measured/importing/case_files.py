@@ -12,6 +12,7 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager, suppress
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 from uuid import uuid4
 
 import numpy as np
@@ -121,6 +122,16 @@ def write_case(
             write_whole(folder / "tests" / _file(draft, i), csv_text(readings(record.source, record.clock)))
         write_whole(folder / f"tests/{draft.name}.toml", "\n".join(map(visible, _sheet(draft, names))) + "\n")
     write_whole(folder / "case.toml", "\n".join(map(visible, lines)))
+
+
+def set_aside(folder: Path, odd: Sequence[str]) -> None:
+    """Tests of a case that taught no network are not fitted, but tell what held in them: effects are chosen with them."""
+    import tomlkit
+
+    document: Any = tomlkit.parse((folder / "case.toml").read_text(encoding="utf-8"))
+    for name in odd:
+        document["tests"][name]["role"] = "validate"
+    write_whole(folder / "case.toml", tomlkit.dumps(document))
 
 
 def roles(count: int, learnt: bool) -> list[str]:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterator, Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -13,8 +13,8 @@ from measured.case import Recorded, Test
 from measured.doubt import USUAL
 
 STEP = 0.1  # of an input's largest value: a smaller change between two rows is a hundredth of the variance of a step
-MOST = 48  # moved by themselves in a test: of more, neighbours are moved together by what they come to
-FEW, LARGE = 8, 30  # so many in a network of more states than that: each costs a run of the model
+MOST = 48  # moved by themselves in a test, hidden ones in account: of more, neighbours are moved together
+FEW, LARGE = 8, 30  # at least so many of each kind; as many in a network of more states than that: each costs a run
 MOSTLY = 0.95  # of the rows with a step: three steps in the time of a row
 EDGE = 1e-3  # of the time between two rows: how long a step takes
 
@@ -51,7 +51,6 @@ def input_steps(test: Test, states: int = 0) -> list[InputStep]:
     states : of the network that is run for each
     """
     time, inputs = recorded_inputs(test)
-    limit = FEW if states > LARGE else MOST
     if time.size < 2 or USUAL["step in sample"] * np.median(np.diff(time)) <= USUAL["clock"]:
         return []
     largest = {n: max(float(np.max(np.abs(u))), 1e-300) for n, u in inputs.items()}
@@ -66,13 +65,22 @@ def input_steps(test: Test, states: int = 0) -> list[InputStep]:
     first = np.argmax(np.abs(every), axis=0)
     most = np.take_along_axis(every, first[None], axis=0)[0]
     rows = np.flatnonzero(np.abs(most) > STEP)
+    hidden = {n: size for n, d in change.items() if (size := _hidden_size(d)) > STEP}
+    limit = FEW if states > LARGE else max(MOST // (1 + len(hidden)), FEW)
     groups = np.array_split(rows, min(limit, rows.size)) if rows.size else []
-    steps = [InputStep(g, most[g] / float(np.linalg.norm(most[g]))) for g in groups]
-    return [*steps, *(s for n, d in change.items() for s in _hidden_steps(n, d, largest[n], limit))]
+    between = np.array_split(np.arange(time.size - 1), min(limit, time.size - 1))
+    return [
+        *(InputStep(g, most[g] / float(np.linalg.norm(most[g]))) for g in groups),
+        *(
+            InputStep(g, np.full(g.size, largest[n] * size / np.sqrt(g.size)), n)
+            for n, size in hidden.items()
+            for g in between
+        ),
+    ]
 
 
-def _hidden_steps(name: str, change: Array, largest: float, limit: int) -> Iterator[InputStep]:
-    """What an input may have been between two rows.  change : between rows, of its largest value;  limit : most of them
+def _hidden_size(change: Array) -> float:
+    """What an input may have been more between two rows, of its largest value, as its changes between rows are.
 
     Where steps come by chance, a row that shows one has more, as of a Poisson process. Where they keep a distance, that
     is where fewer than by chance are next to each other, they have fewer.
@@ -80,13 +88,10 @@ def _hidden_steps(name: str, change: Array, largest: float, limit: int) -> Itera
     stepped = np.abs(change) > STEP
     often = float(np.mean(stepped))
     if stepped.size < 2 or often == 0.0:
-        return
+        return 0.0
     side = float(np.mean(stepped[1:] & stepped[:-1]))
     more = -float(np.log1p(-min(often, MOSTLY))) * min(1.0, side / often**2)
-    size = float(np.sqrt(more * np.mean(np.where(stepped, change, 0.0) ** 2)))
-    if size > STEP:
-        for g in np.array_split(np.arange(change.size), min(limit, change.size)):
-            yield InputStep(g, np.full(g.size, largest * size / np.sqrt(g.size)), name)
+    return float(np.sqrt(more * np.mean(np.where(stepped, change, 0.0) ** 2)))
 
 
 def with_steps(test: Test, steps: Sequence[InputStep], late: Collection[InputStep] = ()) -> Test:

@@ -12,7 +12,7 @@ from measured.doubt import USUAL
 from measured.sensors.operators import of_measurement
 from validation.effects.base import Effect, Scene, with_parameter
 from validation.effects.build import Shaped, copy_link, copy_source
-from validation.effects.time_window import ALIKE, IN, Event, TimeWindow, event
+from validation.effects.time_window import ALIKE, IN, Event, TimeWindow, event, odd_tests
 
 SAME = (
     "kind",
@@ -36,7 +36,8 @@ SAME = (
 
 @dataclass(frozen=True)
 class During(Effect):
-    """An effect while a condition holds: "kind@place in CONDITION", that is a test, an event or an input of 0 to 1."""
+    """An effect while a condition holds: "kind@place in CONDITION", that is a test, all but some tests, an event or an
+    input of 0 to 1."""
 
     base: Effect
     condition: str
@@ -63,7 +64,12 @@ class During(Effect):
 
     @property
     def tests(self) -> tuple[str, ...]:
-        return self.event.tests if self.event else (self.condition,)
+        """Those that were different from the others, because it held there or there alone did not."""
+        return self.event.tests if self.event else odd_tests(self.condition) or (self.condition,)
+
+    def can_act(self, test: str) -> bool:
+        """Can it hold in a test?"""
+        return (test in self.tests) != bool(odd_tests(self.condition))
 
     @property
     def when(self) -> str:

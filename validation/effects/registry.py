@@ -17,7 +17,7 @@ from validation.effects.above import Above
 from validation.effects.base import Effect, ReadingEffect, Scene
 from validation.effects.during import During
 from validation.effects.input_terms import InputConductance, InputLoss
-from validation.effects.time_window import IN, event
+from validation.effects.time_window import IN, event, odd_tests
 
 HERE = Path(__file__).parent
 READ: dict[str, type[ReadingEffect]] = {c.kind: c for c in (Above, InputLoss, InputConductance)}
@@ -81,7 +81,7 @@ def _checked_condition(condition: str, scene: Scene | None, name: str) -> str:
     """The condition, if the scene has what it speaks of."""
     if scene is not None and condition not in scene.inputs:
         window = event(condition)
-        for test in window.tests if window else (condition,):
+        for test in window.tests if window else odd_tests(condition) or (condition,):
             if test not in scene.tests:
                 raise InputError(
                     f"unknown test or event '{test}'",

@@ -20,6 +20,7 @@ if TYPE_CHECKING:
 Span = tuple[float, float]
 NUMBER = r"\d+(?:\.\d+)?"
 PIECE = re.compile(rf"(.+):({NUMBER}-{NUMBER}(?:,{NUMBER}-{NUMBER})*)s")
+OTHERS = re.compile(r"all but (.+)")
 ALIKE = 0.5  # of the time in either of two events is in both: such are one, its ends read otherwise
 AND = " & "
 IN = " in "  # between an effect or a boundary and the condition it holds in
@@ -88,6 +89,12 @@ def event(name: str) -> Event | None:
     return Event.of(dict(spans)) if len(spans) == len(pieces) else None  # type: ignore[arg-type]
 
 
+def odd_tests(condition: str) -> tuple[str, ...]:
+    """The tests that a condition leaves out where it is "all but a & b": it holds in every other, seen or not."""
+    others = OTHERS.fullmatch(condition)
+    return tuple(others[1].split(AND)) if others else ()
+
+
 def checked(occurrence: Event, test: str, first: float, last: float, where: str) -> None:
     """Spans run forwards, lie inside the record and do not overlap."""
     for begin, end in occurrence.spans[test]:
@@ -127,6 +134,8 @@ class TimeWindow:
         time, occurrence = np.asarray(inputs[CLOCK], float), event(self.name)
         if self.name in inputs:
             return self.factor * np.asarray(inputs[self.name], float)
+        if odd := odd_tests(self.name):
+            return np.full_like(time, self.factor * (not any(f"{RUNNING}{test}" in inputs for test in odd)))
         if occurrence is None:
             return self.factor * np.asarray(inputs.get(f"{RUNNING}{self.name}", np.zeros_like(time)), float)
         here = [pairs for test, pairs in occurrence.spans.items() if f"{RUNNING}{test}" in inputs]
@@ -134,7 +143,10 @@ class TimeWindow:
 
 
 def lasts(condition: str, test: Test) -> bool:
-    """Is a condition this test, or an event from its first sample to its last?  An event's name rounds its times."""
+    """Is a condition this test, all but others, or an event from its first sample to its last?  An event's name rounds
+    its times."""
+    if odd := odd_tests(condition):
+        return test.name not in odd
     occurrence, slack = event(condition), 0.5 * test.step_s
     spans = occurrence.spans.get(test.name, ()) if occurrence else ()
     first, last = float(test.time[0]) + slack, float(test.time[-1]) - slack

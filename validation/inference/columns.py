@@ -85,7 +85,7 @@ def effect_columns(
 
 def can_act(effect: Effect, test: Test) -> bool:
     """Can the effect act in the test?  What an input says may be in any."""
-    return not isinstance(effect, During) or test.name in effect.tests or effect.condition in test.inputs
+    return not isinstance(effect, During) or effect.can_act(test.name) or effect.condition in test.inputs
 
 
 def exchange_columns(

@@ -27,7 +27,7 @@ from validation.effects.above import KIND, Above
 from validation.effects.base import Effect, Scene
 from validation.effects.during import During
 from validation.effects.registry import catalogue, effect, kinds
-from validation.effects.time_window import ALIKE, Event, event
+from validation.effects.time_window import ALIKE, AND, Event, event
 from validation.inference.columns import amplitudes, effect_columns
 from validation.inference.events import TimedEvent, predicted_repeats, time_around, timed_event
 from validation.inference.evidence import Evidence, Progress
@@ -171,7 +171,7 @@ def single_test_conditions(evidence: Evidence, bases: Sequence[Effect], values: 
         one = len(subset) == 1
         form = FORM["one whole test" if one else "several whole tests"]
         prior = condition_prior(form / (len(bases) * (len(names) if one else len(every) - len(names))))
-        name = set_condition([evidence.tests[t] for t in subset])
+        name = set_condition(evidence.tests, subset)
         out += [
             Promising(During.of(base, name), prior, float(b) + prior - NOTHING.log_prior)
             for base, b, visible in zip(bases, joint.log_bayes(scale), visibility, strict=True)
@@ -199,11 +199,15 @@ def set_score(scores: Score, bases: int, subset: Sequence[int]) -> tuple[Score, 
     return joint, scores.visible[rows].all(axis=1)
 
 
-def set_condition(tests: Sequence[Test]) -> str:
-    """A test by its name, several as an event that lasts all of each."""
-    if len(tests) == 1:
-        return tests[0].name
-    return Event.of({t.name: [(float(t.time[0]), float(t.time[-1]))] for t in tests}).name
+def set_condition(tests: Sequence[Test], subset: Sequence[int]) -> str:
+    """A test by its name, several as an event that lasts all of each. What held in most of them is what is usual: it
+    is named by the others, and holds in a test that is still to come."""
+    some = [t for i, t in enumerate(tests) if i in subset]
+    if len(some) == 1:
+        return some[0].name
+    if 2 * len(some) > len(tests):
+        return f"all but {AND.join(t.name for i, t in enumerate(tests) if i not in subset)}"
+    return Event.of({t.name: [(float(t.time[0]), float(t.time[-1]))] for t in some}).name
 
 
 def likely_intervals(

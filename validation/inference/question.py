@@ -15,7 +15,7 @@ from geom.arrays import Array
 from measured.doubt import SHARPNESS, USUAL
 from validation.effects.base import Effect, place_words
 from validation.effects.during import During
-from validation.effects.time_window import event
+from validation.effects.time_window import event, odd_tests
 from validation.inference.decide import SURE, Posterior
 from validation.inference.evidence import Evidence
 from validation.inference.hypotheses import Weighed, inclusion, probabilities
@@ -53,7 +53,7 @@ def concerns(effect: Effect, about: str) -> bool:
     if subject is None:
         return about in effect.tests or about == effect.condition
     if effect.event is None:
-        return effect.condition in subject.tests
+        return bool(set(effect.tests) & set(subject.tests))
     return effect.event.overlap(subject) > LIKE
 
 
@@ -63,7 +63,10 @@ def best_question(posterior: Posterior) -> Question | None:
     if P.max() >= SURE:
         return None
     subjects = dict.fromkeys(
-        x.condition if isinstance(x, During) else x.name for x in e.effects if isinstance(x, During) or x.fault
+        about
+        for x in e.effects
+        if isinstance(x, During) or x.fault
+        for about in (odd_tests(x.condition) or (x.condition,) if isinstance(x, During) else (x.name,))
     )
     rows = [(about, yes_probability(posterior, P, about)) for about in subjects]
     about, yes = max(rows, key=lambda row: information(row[1]), default=("", 0.0))

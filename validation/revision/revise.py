@@ -283,7 +283,7 @@ def _effect_checks(
 
 def _trusted(test: Test, faults: Sequence[During]) -> Test:
     """A test without the readings that faults in it explain."""
-    mine = [e for e in faults if test.name in e.tests]
+    mine = [e for e in faults if e.can_act(test.name)]
 
     def read(c: Channel) -> Array:
         return np.where(sum(holds(e.condition, test) for e in mine if e.base.place == c.name) > 0.0, np.nan, c.y)

@@ -483,7 +483,7 @@ def test_two_columns_of_a_sensor_stay_two(tmp_path):
     assert [len({c.name for c in t.channels}) == len(t.channels) for t in case.tests] == [True, True]
 
 
-def test_a_test_that_taught_the_first_network_nothing_is_named(tmp_path, capsys):
+def test_a_test_that_taught_the_first_network_nothing_is_named_and_not_fitted(tmp_path, capsys):
     """In one of five recordings the machine had half the air."""
     files = []
     for seed, factor, tests in ((0, 1.0, 3), (1, 1.0, 2), (2, 1.0, 1)):
@@ -495,3 +495,6 @@ def test_a_test_that_taught_the_first_network_nothing_is_named(tmp_path, capsys)
             pd.DataFrame({**columns, **rises}).round(3).to_csv(files[-1], index=False)
     new(files, Wishes(out=tmp_path / "made", yes=True), None)
     assert "not learnt from 0-dusk: without that" in " ".join(capsys.readouterr().out.split())
+    role_of = {t.name: t.role for t in load_case(tmp_path / "made").case.tests}
+    assert role_of.pop("0-dusk") == "validate"  # a fit to it would bend what the others say
+    assert [*role_of.values()] == ["calibrate"] * 4 + ["hold-out"]

@@ -4,7 +4,8 @@ import numpy as np
 import pytest
 from one_body import measured
 
-from validation.effects.time_window import event
+from validation.effects import effect
+from validation.effects.time_window import event, holds, lasts, odd_tests
 from validation.inference.conditions import set_condition, set_score, whole_test_sets
 from validation.inference.score import Score
 
@@ -32,9 +33,26 @@ def test_what_one_of_the_tests_does_not_show_is_no_candidate():
     assert set_score(every, 2, (0, 1))[1].tolist() == [True, False]
 
 
+TESTS = [measured(name) for name in ("day", "night", "dawn", "dusk")]
+
+
 def test_several_whole_tests_are_an_event_that_lasts_all_of_each():
-    day, night = measured("day"), measured("night")
-    assert set_condition([day]) == "day"
-    found = event(set_condition([day, night]))
+    assert set_condition(TESTS, (0,)) == "day"
+    found = event(set_condition(TESTS, (0, 1)))
     assert found is not None
-    assert found.spans == {t.name: ((t.time[0], t.time[-1]),) for t in (day, night)}
+    assert found.spans == {t.name: ((t.time[0], t.time[-1]),) for t in TESTS[:2]}
+
+
+def test_what_held_in_most_tests_is_told_by_the_others_and_holds_in_one_to_come():
+    condition = set_condition(TESTS, (0, 1, 3))
+    assert condition == "all but dawn"
+    heat = effect(f"loss.constant@core in {condition}")
+    assert heat.when == "in all but dawn"
+    assert [heat.can_act(t.name) for t in TESTS] == [True, True, False, True]
+    unseen = measured("road")
+    assert heat.can_act("road")
+    assert lasts(condition, unseen)
+    assert holds(condition, unseen).tolist() == [1.0] * unseen.time.size
+    assert not holds(condition, TESTS[2]).any()
+    for name in (condition, "all but dawn & dusk"):
+        assert odd_tests(name) == tuple(name.removeprefix("all but ").split(" & "))

@@ -22,7 +22,7 @@ from lumped.model.sites import ASSUMED
 from lumped.schemas.reader import suggestion
 from measured.importing.aligned import Recording, common, grouped, longest_part, shift
 from measured.importing.aloud import first_lines, short_lines
-from measured.importing.case_files import check_new_folder, folder_whole, read_runs, write_case
+from measured.importing.case_files import check_new_folder, folder_whole, read_runs, set_aside, write_case
 from measured.importing.clock import Clock
 from measured.importing.dialogue import Dialogue
 from measured.importing.draft import ASSUMED_ROOM, Draft, test_name
@@ -289,6 +289,10 @@ def save_case(folder: Path, model: Model, drafts: list[Draft], tell: Progress) -
             first = learn_network(Case(folder.name, CaseModel(network), tuple(tests)), model.first)
             model = replace(model, first=first)
             write_whole(partial / "network.toml", first.text())
+            odd = [d for d in documents if d["role"] != "hold-out" and first.learnt and d["name"] not in first.learnt]
+            set_aside(partial, [d["name"] for d in odd])
+            for d in odd:
+                d["role"] = "validate"
     return {
         "case": folder.name,
         "folder": str(folder),
@@ -422,7 +426,10 @@ def _remarks(document: Mapping[str, Any]) -> list[str]:
         )
         odd = [t["name"] for t in tests if t["role"] != "hold-out" and t["name"] not in document["learnt_from"]]
         if odd:
-            remarks.append(f"not learnt from {', '.join(odd)}: without that the others predict each other far better")
+            remarks.append(
+                f"not learnt from {', '.join(odd)}: without that the others predict each other far better. It is not "
+                "fitted, effects are chosen with it"
+            )
     elif document["invented_network"]:
         remarks.append(
             "no machine and no network was given: network.toml is made from the columns, its numbers are "
