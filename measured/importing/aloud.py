@@ -146,14 +146,15 @@ def _heat(draft: Draft, columns: Columns, left: Columns) -> dict[str, str]:
     if not heats:
         candidates = [g.column for r, g in left if {*quantities_of(r.source.labels[g.column])} & {*HEATS}]
         if candidates := candidates or ([best] if best and error < EXPLAINS else []):
-            return {"heat": f"the only heat was left out: '{candidates[0]}'; --place {quote(f'{candidates[0]}=INPUT')}"}
+            return {"heat": f"the only heat was left out: '{candidates[0]}'; --place {quote(f'{candidates[0]}=QUANTITY')}"}
         return {"heat": "no column says what heats it"}
     column, ours = _best(draft, columns, main)
     if not any(g.quantity in HEATS for _, g in heats):
         return {"heat": f"no current and no loss is recorded: '{heats[0][1].column}' alone tells of the heat"}
     lost = any(g.quantity == "power" for _, g in main)  # as was recorded
     if best and not lost and error < BETTER * ours and error < EXPLAINS:
-        return {"heat": f"'{best}' explains the readings better than '{column}'; --place {quote(f'{best}=INPUT')}"}
+        to = "share" if any(r.source.is_switch(g.column) for r, g in left if g.column == best) else "QUANTITY"
+        return {"heat": f"'{best}' explains the readings better than '{column}'; --place {quote(f'{best}={to}')}"}
     return {}
 
 

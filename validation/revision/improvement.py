@@ -183,8 +183,8 @@ def improve(
     while True:
         diagnosis = diagnose(case, kinds=kinds, progress=progress)
         progress(shorten(f"step {len(stairs)}: {diagnosis.words}", LINE, placeholder=" ..."))
-        if supervisor.offer(diagnosis) and len(stairs) > most:
-            return ended(case, stairs, diagnosis, f"{most} steps are enough for one run")
+        if supervisor.offer(diagnosis) and sum(s.effect is not None for s in stairs) >= most:
+            return ended(case, stairs, diagnosis, f"{counted(most, 'effect')} at most in one run")
         refused = list[Refusal]()
         step, document, why = _added(case, supervisor, diagnosis, stairs[-1].left_out_K, refused, progress)
         if step is None:

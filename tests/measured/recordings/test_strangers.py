@@ -842,7 +842,7 @@ def test_units_that_are_spelled_out_and_a_speed_in_an_unknown_one(tmp_path, head
     assert bool(quantity) or "unit 'knots' unknown" in g.doubt
 
 
-@pytest.mark.parametrize("header", ["Fan PWM [%]", "Kühlstufe", "fan stage", "Pumpe [%]", "Lüfter", "xFanOn", "zeta"])
+@pytest.mark.parametrize("header", ["Fan PWM [%]", "Kühlstufe", "fan stage", "Pumpe [%]", "Lüfter", "xFanOn", "zeta", "eta"])
 def test_stages_and_shares_of_a_flow_cool_and_heat_nothing(tmp_path, header):
     """Stages 0 and 1 of a fan: two nodes by hand, from the second on with three times the film at the core."""
     step, rng = 30.0, np.random.default_rng(1)
@@ -861,7 +861,8 @@ def test_stages_and_shares_of_a_flow_cool_and_heat_nothing(tmp_path, header):
         lines = [",".join(v if isinstance(v, str) else f"{v:.6g}" for v in row) for row in rows]
         names = f"t [s],I [A],{header},T_winding [degC],T_core [degC],T_room [degC]"
         (tmp_path / f"run{run}.csv").write_text("\n".join([names, *lines]) + "\n")
-    fixed = {"zeta": "flow_share"} if header == "zeta" else {}
+    to = {"zeta": "flow_share", "eta": "flow_percent"}  # a quantity, or the input that is its usual one
+    fixed = {header: to[header]} if header in to else {}
     assert new(sorted(tmp_path.glob("run*.csv")), Wishes(out=tmp_path / "case", yes=True, places=fixed), None) == 0
     network = tomllib.loads((tmp_path / "case" / "network.toml").read_text())
 

@@ -17,7 +17,7 @@ from geom.errors import InputError
 from geom.escapes import toml_value
 from geom.storage import write_whole
 from geom.table import Table
-from lumped.model.quantities import INPUTS
+from lumped.model.quantities import INPUTS, USUAL
 from lumped.model.sites import ASSUMED
 from lumped.schemas.reader import suggestion
 from measured.importing.aligned import Recording, common, grouped, longest_part, shift
@@ -209,7 +209,7 @@ def _at_place(source: Source, g: Guess, place: str) -> Guess:
     """A column of a first network at the place that --place says; an input keeps what was guessed of it."""
     if place == g.feeds or not source.is_numeric(g.column):
         return g
-    free, target = replace(g, quantity="", feeds=""), Target({place: None} if place and place not in INPUTS else {})
+    free, target = replace(g, quantity="", feeds=""), Target({place: None} if place and place not in {*INPUTS, *USUAL} else {})
     return assigned([free], source, g.column, place, target)[0]
 
 
