@@ -842,7 +842,9 @@ def test_units_that_are_spelled_out_and_a_speed_in_an_unknown_one(tmp_path, head
     assert bool(quantity) or "unit 'knots' unknown" in g.doubt
 
 
-@pytest.mark.parametrize("header", ["Fan PWM [%]", "Kühlstufe", "fan stage", "Pumpe [%]", "Lüfter", "xFanOn", "zeta", "eta"])
+@pytest.mark.parametrize(
+    "header", ["Fan PWM [%]", "Kühlstufe", "fan stage", "Pumpe [%]", "Lüfter", "xFanOn", "zeta", "eta"]
+)
 def test_stages_and_shares_of_a_flow_cool_and_heat_nothing(tmp_path, header):
     """Stages 0 and 1 of a fan: two nodes by hand, from the second on with three times the film at the core."""
     step, rng = 30.0, np.random.default_rng(1)

@@ -209,7 +209,10 @@ def _at_place(source: Source, g: Guess, place: str) -> Guess:
     """A column of a first network at the place that --place says; an input keeps what was guessed of it."""
     if place == g.feeds or not source.is_numeric(g.column):
         return g
-    free, target = replace(g, quantity="", feeds=""), Target({place: None} if place and place not in {*INPUTS, *USUAL} else {})
+    free, target = (
+        replace(g, quantity="", feeds=""),
+        Target({place: None} if place and place not in {*INPUTS, *USUAL} else {}),
+    )
     return assigned([free], source, g.column, place, target)[0]
 
 
