@@ -885,3 +885,12 @@ def test_a_quantity_is_no_place_of_a_network_that_is_there(tmp_path):
     wishes = Wishes(out=tmp_path / "made", yes=True, network=model, places={"I [A]": "stage"})
     with pytest.raises(InputError, match="no 'stage'"):
         new([tmp_path / "a.csv"], wishes, None)
+
+
+def test_a_table_s_name_over_a_current_makes_no_temperature_of_it(tmp_path):
+    """Dataloggers write the table's name behind their own, over whatever column stands there."""
+    head = '"TOA5","CR6","CR6","12345","Tab30s"\n"TIMESTAMP","Tcoil_Avg","Tair_Avg","Pel_Avg","Iline_Avg"\n'
+    units = '"TS","Deg C","Deg C","W","Amps"\n"","Avg","Avg","Avg","Avg"'
+    text = table(head + units, S["t"], S["W"], S["A"], S["I"] ** 2, S["I"])
+    case, document = written(tmp_path, text)
+    assert {"current_A", "power_W"} <= set(case.case.tests[0].inputs), document
