@@ -9,8 +9,7 @@ import numpy as np
 import pytest
 import tomlkit
 from command_line import answered
-from drawings import whole
-from foreign_machines import motor_cad, pyleecan
+from foreign_machines import motor_cad, pyleecan, whole
 from hostile import CANARY, hostile_names
 from test_hostile_cases import FILES, NAMES, OLD, checked, distinct, hostile_case
 

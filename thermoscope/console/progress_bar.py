@@ -146,9 +146,9 @@ class ProgressBar:
         if self.part * here > 0.0:
             rest = here / self._done(here) - here
         begin, fraction, piece = self.loop
-        late, done = before + here > expected, fraction or piece  # the first piece takes at least as long as so far
+        late, share = before + here > expected, fraction or piece  # the first piece takes at least as long as so far
         if late or not self.same_case:
-            rest = max(rest, (self.clock() - begin) * (1.0 - done) / done)
+            rest = max(rest, (self.clock() - begin) * (1.0 - share) / share)
         if self.now in self.last and (self.part or late):
             took[self.now] = before + here + rest
         stages = [s for s in (*self.took, self.now) if s in self.last]
