@@ -31,6 +31,7 @@ from pathlib import Path
 from statistics import median
 
 from scripts.published import publish
+from thermoscope.console.progress_bar import PREPARING
 
 ROOT = Path(__file__).resolve().parents[2]
 USUAL = ROOT / "thermoscope" / "console" / "usual_stages.json"
@@ -125,14 +126,14 @@ def stages_of(name: str, cache: Path) -> dict[str, float]:
 def usual(stages: Sequence[dict[str, float]]) -> dict[str, float]:
     """The median of each stage over the cases that have it (s), in the order in which the longest list has them.
 
-    Of a further step, "1 looking", as much of it as the share of the cases that come to it.
+    Where some cases come to a further step, "1 looking", one like the first is foretold: how many come nobody knows,
+    and what they took in other cases says less of a case than its own first step.
     """
     longest = sorted(stages, key=len, reverse=True)
-    having = {
-        word: [took[word] for took in stages if word in took] for word in dict.fromkeys(w for t in longest for w in t)
-    }
-    share = {word: len(some) / len(stages) if word[0].isdigit() else 1.0 for word, some in having.items()}
-    return {word: round(share[word] * median(some), 1) for word, some in having.items()}
+    words = dict.fromkeys(w for t in longest for w in t)
+    once = {word: round(median(t[word] for t in stages if word in t), 1) for word in words if not word[0].isdigit()}
+    again = {f"1 {word}": took for word, took in once.items() if word not in PREPARING}
+    return once | ({"1 step": 0.0} | again if len(once) < len(words) else {})
 
 
 def alone(row: dict[str, float]) -> float:

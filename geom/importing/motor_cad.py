@@ -68,19 +68,28 @@ CONDUCTIVITIES = {
 
 @dataclass
 class File:
-    """Keys of a .mot file, each with its section; the first value of a key that stands there twice."""
+    """Keys of a .mot file, each with its section; the first value of a key that stands there twice.
+
+    contradictions : key -> the first value and another;  reads : keys that somebody asked for
+    """
 
     path: Path
     values: dict[str, str] = field(default_factory=dict)
     sections: dict[str, str] = field(default_factory=dict)
     contradictions: dict[str, tuple[str, str]] = field(default_factory=dict)
+    reads: set[str] = field(default_factory=set)
 
     def where(self, key: str) -> str:
         return f"{self.path} [{self.sections.get(key, 'Dimensions')}]"
 
+    def text(self, key: str) -> str:
+        """The value as it stands there; "" of a key that is not there."""
+        self.reads.add(key)
+        return self.values.get(key, "")
+
     def number(self, key: str, low: float = 0.0, high: float = 1e6, usual: float | None = None) -> float:
         """A number, or the usual one where the key is not there."""
-        if usual is not None and not self.values.get(key, "").strip():
+        if not self.text(key).strip() and usual is not None:
             return usual
         return number(self.values, key, self.where(key), low, high)
 
@@ -92,7 +101,7 @@ class File:
         return round(self.number(key, 1, 400))
 
     def choice(self, key: str, words: Any) -> str:
-        word = self.values.get(key, "")
+        word = self.text(key)
         if word not in words:
             raise InputError(f"{key} = {word[:40]!r} is not read", self.where(key), f"one of: {', '.join(words)}")
         return word
@@ -102,10 +111,10 @@ def read_motor_cad(path: Path, family_template: str) -> Draft:
     """The draft of a machine file. Raises InputError for a file that is damaged or foreign, or of another kind."""
     file = _parsed(path)
     file.choice("Motor_Type", ("BPM",))
-    draft = new_draft(file.values.get("Title"), path, f"Motor-CAD {file.values.get('Program_Version', '')}")
+    draft = new_draft(file.text("Title"), path, f"Motor-CAD {file.values.get('Program_Version', '')}")
     draft.take("machine", "Title", name=draft.name)
     draft.assume("machine", "any cross-section", family="cross-section")
-    notes = file.values.get("DataFile_Notes")
+    notes = file.text("DataFile_Notes")
     if notes:
         draft.take("machine", "DataFile_Notes", description=one_line(notes))
     copper = _stator(draft, file)
@@ -136,13 +145,14 @@ def _parsed(path: Path) -> File:
             section = line[1:-1]
         elif "=" in line:
             key, _, value = line.partition("=")
-            if HOME.get(key.strip()) == section:
+            if HOME.get(key.strip()) == section != file.sections.get(key.strip()):
                 file.values.pop(key.strip(), None)
+                file.sections.pop(key.strip(), None)
             first = file.values.setdefault(key.strip(), value.strip())
             file.sections.setdefault(key.strip(), section)
             if first != value.strip() and not key.startswith("["):
                 file.contradictions.setdefault(key.strip(), (first, value.strip()))
-    if file.values.get("Program_Name") != "Motor-CAD":
+    if file.text("Program_Name") != "Motor-CAD":
         raise InputError("Program_Name is not Motor-CAD", f"{path} [Header]", RIGHT)
     return file
 
@@ -197,7 +207,7 @@ def _stator(draft: Draft, file: File) -> tuple[float, float, float]:
     words = "Slot_Type, Slot_Opening, Tooth_Width, Slot_Depth, Tooth_Tip_Depth, Tooth_Tip_Angle, Slot_Corner_Radius"
     room = sum(abs(loop_area(loop)) for loop in wire)
     count, each, kind = file.number("ConductorsPerSlot", 1, 1e5), _section(file), "round"
-    if file.values.get("Armature_CoilStyle") == "1":
+    if file.text("Armature_CoilStyle") == "1":
         kind = "hairpin"
         if (turn := _layers(draft, file, round(count))) is not None:
             return each * 1e6, slots * count * (file.length("Stator_Lam_Length") + 2 * turn), 1.0
@@ -242,7 +252,7 @@ def _layers(draft: Draft, file: File, count: int) -> float | None:
     width, height = file.number("Copper_Width"), file.number("Copper_Height")
     enamel = file.number("Insulation_Thickness", usual=0.1) or 0.05
     liner, slots = file.number("Liner_Thickness", usual=0.0) or 0.05, file.count("Slot_Number")
-    parallel = file.values.get("Slot_Type") == "Parallel_Slot"
+    parallel = file.text("Slot_Type") == "Parallel_Slot"
     key, ours = ("Slot_Width", "slot_width_mm") if parallel else ("Tooth_Width", "tooth_mm")
     wall, inner = file.number(key), bore / 2 + tip + liner
     room = (wall if parallel else 2 * inner * math.sin(math.pi / slots) - wall) - 2 * liner
@@ -268,7 +278,7 @@ def _layers(draft: Draft, file: File, count: int) -> float | None:
 
 def _section(file: File) -> float:
     """Of one conductor (m2): round by its diameter, a hairpin by width and height."""
-    if file.values.get("Armature_CoilStyle") == "1":
+    if file.text("Armature_CoilStyle") == "1":
         return file.length("Copper_Width") * file.length("Copper_Height")
     return math.pi / 4 * file.length("Copper_Diameter") ** 2
 
@@ -333,7 +343,7 @@ ROTORS: dict[str, Callable[[Draft, File, Place, int], None]] = {
 
 
 def _frame(draft: Draft, file: File, family_template: str) -> None:
-    kind, lam, outside = file.values.get("Housing_Type", ""), file.length("Stator_Lam_Dia"), file.length("Housing_Dia")
+    kind, lam, outside = file.text("Housing_Type"), file.length("Stator_Lam_Dia"), file.length("Housing_Dia")
     wall, stack = (outside - lam) / 2, file.number("Stator_Lam_Length")
     if "Water_Jacket" in kind:
         inner, high = file.length("WJ_Channel-Lam"), file.length("WJ_Channel_Height")
@@ -365,7 +375,7 @@ def _frame(draft: Draft, file: File, family_template: str) -> None:
 def _cooling(draft: Draft, file: File) -> None:
     if draft.value("geometry.housing", "kind") != "spiral" or draft.value("cooling", "jacket"):
         return
-    fluid = file.values.get("Housing_Water_Jacket_Fluid_Name", "")
+    fluid = file.text("Housing_Water_Jacket_Fluid_Name")
     if fluid.lower() in COOLANTS:
         draft.take("cooling", "Housing_Water_Jacket_Fluid_Name", coolant=COOLANTS[fluid.lower()])
     else:
@@ -409,7 +419,7 @@ def _losses(draft: Draft, file: File, copper: tuple[float, float, float]) -> Non
 def _left(draft: Draft, file: File) -> None:
     """What matters and goes nowhere; values that differ from our table's; stored temperatures."""
     for key, (neutral, why) in IGNORED.items():
-        text = file.values.get(key, "")
+        text = file.text(key)
         if text and text != str(neutral) and not (isinstance(neutral, float) and _zero(text)):
             draft.leave(key, text, why)
     for key, (ours, k) in CONDUCTIVITIES.items():
@@ -417,10 +427,10 @@ def _left(draft: Draft, file: File) -> None:
         if abs(value - k) > 0.01 * k:
             draft.leave(key, value, f"{ours} of our table has {k:g} W/m/K; another material by [materials]")
     for key, (first, second) in file.contradictions.items():
-        if key in _MATTERS:
+        if key in file.reads:
             draft.leave(key, second, f"stands there twice: {first} is taken")
     for k in range(200):
-        legend = file.values.get(f"Temperature_Validation_Legend[{k}]")
+        legend = file.text(f"Temperature_Validation_Legend[{k}]")
         if legend:
             value = file.number(f"Temperature_Validation_Temperature[{k}]", -273.15, 2000)
             draft.readings[one_line(legend)[:80]] = value
@@ -432,6 +442,3 @@ def _zero(text: str) -> bool:
         return float(text) == 0.0
     except ValueError:
         return False
-
-
-_MATTERS = {"Stator_Lam_Dia", "Stator_Bore", "Stator_Lam_Length", "Slot_Depth", "Tooth_Width", "Airgap", "Shaft_Dia"}

@@ -50,11 +50,12 @@ def layout(rows: Sequence[Row], where: str) -> Layout:
     if any(is_time(str(c)) or quantities_of(str(c)) for i in gapless for c in rows[i]):
         candidates = gapless  # not names of groups, which stand over the first column of each
     header = max(candidates, key=lambda i: (_informative(rows[i]), i))
-    names = [str(c or "").strip() for c in trimmed(rows[header])]
+    names, marked = [str(c or "").strip() for c in trimmed(rows[header])], False
     if names and names[0].strip("#%/ ") != names[0]:
         names[0] = names[0].strip("#%/ ")
         widest = max(len(row) for row in head[first:])  # cells that are empty in most rows have names too
-        names = names[1:] if not names[0] and len(names) > max(width, widest) else names
+        if marked := not names[0] and len(names) > max(width, widest):
+            names = names[1:]
     if len(names) == width - 1:
         ends = [[row[j] for row in head[first:] if len(row) == width] for j in (0, -1)]
         counts = [number(cell) for cell in ends[0][:FIRM]]  # as statistics programs number their rows
@@ -88,7 +89,10 @@ def layout(rows: Sequence[Row], where: str) -> Layout:
         remarks = _padded(["", *[""] * late, *remarks[1:]], width)
         names = [f"{name} {remark}".strip() for name, remark in zip(names, remarks, strict=True)]
     labelled: Row = next((row for row in rows[:header] if row and row[0] == "Y_Unit_Label"), ())  # of LabVIEW
-    unit_cells = _padded(rows[units] if units is not None else labelled, width)
+    unit_row = rows[units] if units is not None else labelled
+    unit_cells = _padded(
+        unit_row[1:] if marked and unit_row and not str(unit_row[0]).strip("#%/ ") else unit_row, width
+    )
     unit_cells = ["" if name[-1:] in ")]" and split_unit(name)[1] else u for name, u in zip(names, unit_cells)]
     if not is_unit(unit_cells[0]):
         unit_cells[0] = split_unit(unit_cells[0])[1]  # the row's own label, such as "Unit [s]"

@@ -32,7 +32,7 @@ PATH = re.compile(r"[/\\.:|]")  # between the names of groups: Model Root/i_phas
 CHANNEL = re.compile(r"^(?:[A-Z]+\d+-\d+|CH ?\d+)[: ]+")  # of a logger, before what it reads
 LAST = ("time", "timestamp", "zeit")  # of a path, which is a clock whatever it leads through
 LETTERED = re.compile(
-    r"(?<![A-Za-z])[a-z]?([TP])(?!im|yp|ag|es|ot|or|q|rq|as|ic|re|os|ha|he|er|ar|wm|id)[a-z]{1,2}(?![A-Za-z])"
+    r"(?<![A-Za-z])[a-z]?([TP])(?!im|yp|ag|ab|es|ot|or|q|rq|as|ic|re|os|ha|he|er|ar|wm|id)[a-z]{1,2}(?![A-Za-z])"
 )
 SHORT = re.compile(r"[A-Z][a-z]{1,3}(T)")  # MotT, as flight controllers write it
 OUTSIDE = re.compile(r"(?<![A-Za-z])[a-z]?T(?:_?a|e|o|ext|out|am)(?![A-Za-z])")  # as building physics writes the air

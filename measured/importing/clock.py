@@ -269,7 +269,9 @@ def _in_columns(source: Source) -> Clock | None:
     with minutes, such."""
     read: dict[str, tuple[str, Array]] = {}
     for c in source.cells:
-        part = next((name for name, words in CLOCK_PARTS.items() if source.labels[c].strip().lower() in words), "")
+        label = source.labels[c].strip().partition(".")[0]  # ss.fff
+        part = next((name for name, words in CLOCK_PARTS.items() if label.lower() in words), "")
+        part = "month" if label == "MM" and "mm" in source.labels.values() else part  # beside minutes
         if part and part not in read and source.is_numeric(c):
             n = source.numbers(c)
             if np.isfinite(n).all() and (n >= 0).all() and ((n == np.round(n)).all() or part == "second"):

@@ -85,6 +85,8 @@ def text_table(file: Path) -> tuple[Layout, Columns, list[str], float | None]:
     """
     lines, notes = Lines(file, encoding_of(lambda: chunks(file, BLOCK), file)), list[str]()
     start = "".join(itertools.islice(lines, SAMPLE_LINES))[:10_000]
+    if 3 * sum(not line.strip() for line in start.splitlines()) > start.count("\n"):  # between every two rows
+        lines = lines.edited(lambda line: line if line.strip() else "")
     if FORTRAN.search(start):
         lines = lines.edited(lambda line: FORTRAN.sub("E", line))
     if ARROW.search(start):

@@ -5,8 +5,7 @@ import tomllib
 
 import pytest
 from command_line import answered, refusal
-from documents import ROOT
-from input_cases import case_of
+from input_cases import ROOT, case_of
 
 from lumped.declarations.network import read_network
 from lumped.model.build import node_source

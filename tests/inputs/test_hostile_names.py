@@ -35,6 +35,7 @@ from thermoscope.case_folder.workbook import write_csvs, write_xlsx
 from thermoscope.console.summary import Summary, limited_lines, printed
 from thermoscope.console.terminal import give, notes
 from viz.pages import html
+from viz.pages.report import Report
 from viz.viewer.page import render
 
 NAMES = hostile_names()
@@ -173,6 +174,16 @@ def tags(name):
 def test_a_page_has_the_same_tags_whatever_the_names_are():
     usual = tags("name")
     assert [name for name in NAMES if tags(name) != usual] == []
+
+
+def test_a_notebook_shows_the_same_tags_whatever_the_names_are():
+    def tags_of(name):
+        parser, framed = Tags(), Report(name)._repr_html_()
+        parser.feed(Table(name, [name, "n"], [[name, 1.0]]).html() + framed)
+        return parser.tags
+
+    usual = tags_of("name")
+    assert [name for name in NAMES if tags_of(name) != usual] == []
 
 
 def test_the_viewer_keeps_names_in_its_data():

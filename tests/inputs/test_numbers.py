@@ -6,8 +6,7 @@ from functools import cache
 import pytest
 import tomlkit
 from command_line import refusal
-from documents import ROOT, documented, key_of, numbers, put, shipped
-from input_cases import case_of
+from input_cases import ROOT, case_of, documented, key_of, numbers, put, shipped
 
 from geom.errors import InputError
 from geom.machine_file import machine_from

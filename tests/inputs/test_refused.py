@@ -211,6 +211,7 @@ REFUSED = {
     ),
     "a capacity of zero": (swap("network.toml", "C_J_K = 2000", "C_J_K = 0"), ["C_J_K = 0", "1e-09 to 1e+10"]),
     "a capacity of next to nothing": (swap("network.toml", "C_J_K = 2000", "C_J_K = 1e-300"), ["C_J_K", "1e-09"]),
+    "a resistance of nothing": (swap("network.toml", "R20_ohm = 0.02", "R20_ohm = 0"), ["R20_ohm", "1e-09"]),
     "a factor down to next to nothing": (parameter("low = 1e-300"), ["low = 1e-300", "1e-12"]),
     "no capacity": (
         lambda case: [edited(case / "network.toml", f"C_J_K = {C}", "") for C in (2000, 6000, 3000)],

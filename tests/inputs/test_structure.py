@@ -6,8 +6,7 @@ import tomllib
 
 import pytest
 import tomlkit
-from documents import documented, put, shipped
-from input_cases import case_of, original
+from input_cases import case_of, documented, original, put, shipped
 from test_numbers import SHEET
 
 from extras.bench.heat_run.judgement import judged

@@ -59,7 +59,8 @@ class ProgressBar:
     block : which of several pieces of work that have one bar, 0 of a single one; the same word in two of them is two
     stages;  part : of the stage that runs, where its messages count "(3 of 200)";  piece : of it, between two counts
     counted_s : how long the stage ran up to its last count (s);  same_case : is `last` of this very one?
-    loop : start of a loop in the stage (s), part of it that is done;  share : on the line;  share_s : when
+    loop : start of a loop in the stage (s), part of it that is done, and with the piece that runs
+    share : on the line;  share_s : when
     cpu : s that this process has computed, rising;  start : clock and cpu at the first stage
     """
 
@@ -73,7 +74,7 @@ class ProgressBar:
     part: float = 0.0
     piece: float = 0.0
     counted_s: float = 0.0
-    loop: tuple[float, float] = (0.0, 0.0)
+    loop: tuple[float, float, float] = (0.0, 0.0, 1.0)
     share: float = 0.0
     share_s: float = 0.0
     same_case: bool = True
@@ -89,8 +90,8 @@ class ProgressBar:
         A count alone, "(3 of 200)", is of a loop in the stage, which takes at least as long as that loop.
         """
         if loop := ALONE.fullmatch(message):
-            fraction = (int(loop[1]) - 1) / int(loop[2])
-            self.loop = (self.loop[0], fraction) if fraction > self.loop[1] else (self.clock(), 0.0)
+            fraction, piece = (int(loop[1]) - 1) / int(loop[2]), 1 / int(loop[2])
+            self.loop = (self.loop[0] if fraction > self.loop[1] else self.clock(), fraction, fraction + piece)
             return False
         if not (self.now or self.took):
             self.share_s = self.clock()
@@ -128,7 +129,7 @@ class ProgressBar:
         instant = self.clock()
         if self.now:
             self.took[self.now] = self.took.get(self.now, 0.0) + instant - self.since
-        self.since, self.now, self.part, self.counted_s, self.loop = instant, "", 0.0, 0.0, (instant, 0.0)
+        self.since, self.now, self.part, self.counted_s, self.loop = instant, "", 0.0, 0.0, (instant, 0.0, 1.0)
 
     def left(self) -> tuple[float, float] | None:
         """Share done, and seconds left; None where no stage is known that is worth it.
@@ -144,10 +145,10 @@ class ProgressBar:
         rest = abs(expected - before - here)
         if self.part * here > 0.0:
             rest = here / self._done(here) - here
-        begin, fraction = self.loop
-        late = before + here > expected
-        if fraction and (late or not self.same_case):
-            rest = max(rest, (self.clock() - begin) * (1.0 - fraction) / fraction)
+        begin, fraction, piece = self.loop
+        late, share = before + here > expected, fraction or piece  # the first piece takes at least as long as so far
+        if late or not self.same_case:
+            rest = max(rest, (self.clock() - begin) * (1.0 - share) / share)
         if self.now in self.last and (self.part or late):
             took[self.now] = before + here + rest
         stages = [s for s in (*self.took, self.now) if s in self.last]

@@ -4,7 +4,7 @@ import cmath
 import math
 
 import pytest
-from drawings import (
+from foreign_machines import (
     BORE,
     DEEP,
     MAGNET,

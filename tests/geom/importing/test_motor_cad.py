@@ -81,6 +81,25 @@ def test_what_contradicts_or_goes_nowhere_is_said(tmp_path):
     assert {"Sleeve_Thickness", "Spray_Cooling", "[Losses_At_RPM_Ref]"} <= set(left)
 
 
+REPEATED = {"Slot_Number": 18, "Magnet_Thickness": 5, "ConductorsPerSlot": 30, "Liner_Thickness": 1}
+
+
+@pytest.mark.parametrize("key", REPEATED)
+def test_a_key_that_stands_there_twice_is_said(tmp_path, key):
+    """Whatever is read of a file; what nobody reads may stand there as often as it likes."""
+    draft = draft_of(tmp_path, f"{key}={REPEATED[key]}\nOf_No_Use=1\nOf_No_Use=2\n")
+    left = {e.key: e.source for e in draft.entries if e.kind == "not understood"}
+    assert "stands there twice" in left[key]
+    assert "Of_No_Use" not in left
+
+
+def test_of_sections_that_have_a_key_one_counts_and_may_not_repeat_it(tmp_path):
+    other = draft_of(tmp_path, "Shaft_Speed=900\n")
+    assert (other.value("ratings", "speed_rpm"), "Shaft_Speed" in {e.key for e in other.entries}) == (1500.0, False)
+    twice = draft_of(tmp_path, Shaft_Speed="1500\nShaft_Speed=900")
+    assert "1500 is taken" in {e.key: e.source for e in twice.entries}["Shaft_Speed"]
+
+
 @pytest.mark.parametrize(("slot", "more"), [("Parallel_Slot", "Slot_Width=7\n"), ("Parallel_Tooth", "")])
 def test_slots_of_either_shape_mesh(tmp_path, slot, more):
     machine = machine_from(draft_of(tmp_path, more, Slot_Type=slot, Slot_Corner_Radius=0).sections(), slot)

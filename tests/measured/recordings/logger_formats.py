@@ -762,4 +762,23 @@ FORMATS: dict[str, Format] = {
         units=["Einheit", "A", "°C", "°C\nZeit [ms];;;"],
         stamp=lambda k: str(5000 * k),
     ),
+    "a line of nothing between all rows": Format("tIWA", ending="\r\n\r\n"),
+    "a comment sign before names and units": Format(
+        "tIWA", ["% time", "current", "winding", "room"], " ", units=["% s", "A", "degC", "degC"]
+    ),
+    "turkish minutes": Format(
+        "tIWA",
+        ["Zaman (dk)", "Akım (A)", "Sargı (°C)", "Ortam (°C)"],
+        ";",
+        ",",
+        stamp=lambda k: f"{k * 5}",
+        step_s=300.0,
+        encoding="cp1254",
+    ),
+    "months in MM beside minutes in mm": Format(
+        "uvwxytIWA",
+        ["YYYY", "MM", "DD", "hh", "mm", "ss.fff", *IWA],
+        cells={c: at(f) for c, f in zip("uvwxy", ("%Y", "%m", "%d", "%H", "%M"))},
+        stamp=at("%S.000"),
+    ),
 }

@@ -888,3 +888,30 @@ def test_a_quantity_is_no_place_of_a_network_that_is_there(tmp_path):
     wishes = Wishes(out=tmp_path / "made", yes=True, network=model, places={"I [A]": "stage"})
     with pytest.raises(InputError, match="no 'stage'"):
         new([tmp_path / "a.csv"], wishes, None)
+
+
+def test_a_table_s_name_over_a_current_makes_no_temperature_of_it(tmp_path):
+    """Dataloggers write the table's name behind their own, over whatever column stands there."""
+    head = '"TOA5","CR6","CR6","12345","Tab30s"\n"TIMESTAMP","Tcoil_Avg","Tair_Avg","Pel_Avg","Iline_Avg"\n'
+    units = '"TS","Deg C","Deg C","W","Amps"\n"","Avg","Avg","Avg","Avg"'
+    text = table(head + units, S["t"], S["W"], S["A"], S["I"] ** 2, S["I"])
+    case, document = written(tmp_path, text)
+    assert {"current_A", "power_W"} <= set(case.case.tests[0].inputs), document
+
+
+def test_an_angle_is_no_current_and_words_of_the_drive_are_no_temperatures(tmp_path):
+    head = "t [s],T_winding [degC],T_room [degC],i_a [A],position [rad],fault,mode,rev"
+    text = table(head, S["t"], S["W"], S["A"], S["I"], 0.3 * S["t"], 0 * S["t"], 2 + 0 * S["t"], 7 + 0 * S["t"])
+    case, document = written(tmp_path, text)
+    (test,) = case.case.tests
+    assert [c.name for c in test.channels] == ["T_winding [degC]"], document
+    assert [*test.inputs] == ["current_A"]
+    assert test.inputs["current_A"].max() == pytest.approx(S["I"].max())
+
+
+def test_a_header_may_name_more_than_its_rows_fill(tmp_path):
+    text = table("t [s],T_winding [degC],T_room [degC],I [A],T_spare [degC],Remark", *(S[c] for c in "tWAI"))
+    case, _ = written(tmp_path, text)
+    (test,) = case.case.tests
+    assert [c.name for c in test.channels] == ["T_winding [degC]"]
+    assert test.channels[0].y[-1] == pytest.approx(S["W"][-1], abs=0.01)

@@ -146,6 +146,18 @@ def test_a_stage_that_counts_says_how_long_it_takes():
     assert stages.left()[1] == pytest.approx(150.0), "a mesh that was not needed is not waited for"
 
 
+def test_the_first_piece_of_a_loop_says_how_long_all_take_at_least():
+    """Nine of them, in a stage that usually takes 20 s: after 10 s of the first some 80 s are still to come."""
+    clock = Clock()
+    stages = ProgressBar({"fitting": 10.0, "looking": 20.0}, clock, same_case=False)
+    worked(stages, clock, [("fitting", 10.0), ("looking", 0.0)])
+    stages.enter("(1 of 9)")
+    clock.now += 10.0
+    assert stages.left()[1] == pytest.approx(80.0)
+    stages.enter("(2 of 9)")
+    assert stages.left()[1] == pytest.approx(80.0)
+
+
 def test_the_share_moves_between_two_counts():
     """Three pieces of two minutes each, counted as they begin: in every 20 s of the second and third it rises."""
     clock = Clock()
