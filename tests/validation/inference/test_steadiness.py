@@ -71,15 +71,19 @@ def instants(p):
 @pytest.mark.parametrize(
     ("on_half", "groups", "says"),
     [
-        (Decision("named", ((1,),), 0.9), ((0, 1),), "says brush contact drop at commutator"),
-        (Decision("group", ((0, 2),), 0.9), ((0, 2),), "cannot tell them apart"),
+        (
+            Decision("named", ((1,),), 0.9),
+            ((0, 1),),
+            "every second reading alone says brush contact drop at commutator",
+        ),
+        (Decision("group", ((0, 2),), 0.9), ((0, 2),), "nor can every second reading"),
     ],
 )
 def test_a_name_that_half_of_the_instants_do_not_give_is_withheld(on_half, groups, says):
     whole = Decision("named", ((0,),), 0.95)
     choice = steady_decision(posterior(), lambda p: whole if instants(p) == instants(posterior()) else on_half)
     assert (choice.verdict, choice.groups, choice.sure) == ("group", groups, 0.95)
-    assert f"every second reading alone {says}" in unsteady_words(posterior(), choice)
+    assert says in unsteady_words(posterior(), choice)
 
 
 @pytest.mark.parametrize(
