@@ -134,6 +134,8 @@ def test_a_sensor_has_one_colour(told, stage):
                 over += 1
                 assert f'<span class="{CSS[bar["tone"]]}">over ({bar["tone"]})</span>' in html
     assert (over > 0) == (stage == "wrong")
+    (fell,), (left,) = (re.findall(rf"\.bar \.{part} {{ background: (.*?);", css) for part in ("was", "now"))
+    assert fell == left, "what fell is pale in the workbench as in the report, of one colour"
     assert {VERDICT[name].lower() for name in CSS} <= numbers(css.lower(), r"#[0-9a-f]{6}")
 
 
