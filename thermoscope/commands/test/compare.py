@@ -154,8 +154,8 @@ def roles_in_short(records: Sequence[Mapping[str, Any]]) -> str:
     if not guesses:
         return ""
     unknown, how = sum(r["role"] is None for r in guesses), 'say role = "..." in network.toml'
-    which = f"{counted(len(guesses), 'role')}{f', {unknown} of them unknown' * bool(unknown)}"
-    return f"Guessed by names: {which} of nodes; effects are placed by roles: {how}."
+    which = f"{counted(len(guesses), 'node')}{f', {unknown} of them unknown' * bool(unknown)}"
+    return f"Roles are guessed by name of {which}; effects are placed by roles: {how}."
 
 
 def _reasons(document: Mapping[str, Any]) -> list[Table | str]:
