@@ -202,14 +202,14 @@ def offers(diagnosis: Document) -> list[dict[str, Any]]:
     return [
         {
             **{"kind": kind, "what": what, "gain": o["predicted_gain"]},
-            "separates": [*map(_apart_words, o["separates"])],
+            "separates": [*map(_pair_words, o["separates"])],
             **{"hours": o.get("hours"), "how": o.get("why") or currents(o.get("currents", []))},
         }
         for kind, o, what in rows
     ]
 
 
-def _apart_words(pair: str) -> str:
+def _pair_words(pair: str) -> str:
     """Two explanations that a test would tell apart, in words."""
     return " from ".join(map(value_words, pair.split(" / ")))
 

@@ -49,7 +49,7 @@ Record = tuple[str, str]  # test and channel
 Pulls = Sequence[tuple[str, float, float]]
 ROWS, LEAST_ODDS = 20, 1e-4  # candidates in the table; odds below one in ten thousand are not listed
 LEAST_MEMBER = 0.02  # probability below which a member of a group is in the table, and not in the sentence
-APART = "; these tests and sensors cannot tell them apart"
+CLAUSE = "; these tests and sensors cannot tell them apart"
 EVEN = 0.5  # probability from which that something is missing is more likely than not
 OFF = 2.0  # deviations of what a sensor and a good model allow, from which a record is called off
 MOST = 3  # records that stay off are told, worst first
@@ -442,8 +442,9 @@ def sentence(
         return f"heat is missing or in excess{place}; nothing in the catalogue explains it ({percent(choice.sure)})"
     heat = _leading_heat(posterior, rows)
     each = [_group_words(posterior, g, rows, () if i else heat) for i, g in enumerate(choice.groups)]
-    told = [w.removesuffix(APART) for w in each[:-1]] if each[-1].endswith(APART) else each[:-1]  # once, at the end
-    return "; ".join([*told, each[-1]]) + ("; check the measurement first" if verdict == "data" else "")
+    clause = CLAUSE if each[-1].endswith(CLAUSE) else ""  # once, at the end
+    words = "; ".join(w.removesuffix(clause) for w in each) + clause
+    return words + ("; check the measurement first" if verdict == "data" else "")
 
 
 def _leading_heat(posterior: Posterior, rows: Sequence[Candidate]) -> tuple[str, ...]:
@@ -471,7 +472,7 @@ def _group_words(posterior: Posterior, group: Group, rows: Sequence[Candidate], 
     members = [(k, p) for k, p in probability.items() if p >= LEAST_MEMBER or k in group[:2]]
     likely = [*heat, *(f"{by_name[e.names[k]].words} ({percent(p)})" for k, p in members)]
     likely += [f"{len(group) - len(members)} less likely ones"] * (len(group) > len(members))
-    return f"{' or '.join(likely)}{APART}"
+    return f"{' or '.join(likely)}{CLAUSE}"
 
 
 def impossible_words(effect: Effect, row: Candidate) -> str:

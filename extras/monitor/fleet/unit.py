@@ -74,7 +74,7 @@ def statistics(case: th.MeasuredCase, test: th.Test) -> Statistics:
     eta[unit] += (origin / scale * prior)[unit]
     share = np.linalg.solve(information[np.ix_(~unit, ~unit)], information[np.ix_(~unit, unit)]).T
     H = information[np.ix_(unit, unit)] - share @ information[np.ix_(~unit, unit)]
-    names = tuple(p.name for p, own in zip(unknowns.parameters, unit, strict=True) if own)
+    names = tuple(p.name for p, flag in zip(unknowns.parameters, unit, strict=True) if flag)
     r = np.concatenate([s.r for s in fit.parts])
     ages = np.array([_drift_sd(network, p) for p in unknowns.parameters])[unit]
     rmse = float(np.sqrt(np.mean(r**2)))

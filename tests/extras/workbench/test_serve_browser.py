@@ -6,6 +6,7 @@ Screenshots are kept in out/screenshots.
 import json
 import os
 import re
+import runpy
 import shutil
 import subprocess
 import sys
@@ -14,7 +15,6 @@ from pathlib import Path
 from urllib.parse import urljoin
 
 import pytest
-from drawings import whole
 from foreign_machines import motor_cad
 from test_serve_live import RUN as FIRST
 
@@ -33,7 +33,8 @@ pytestmark = [
     pytest.mark.nightly,
     pytest.mark.skipif(BROWSER is None, reason="needs a browser: apt-get install -y chromium"),
 ]
-SERVER = Path(__file__).parents[2] / "shared" / "motor_case.py"
+TESTS = Path(__file__).parents[2]
+SERVER, DRAWINGS = TESTS / "shared" / "motor_case.py", TESTS / "geom" / "importing" / "drawings.py"
 LONG = 400_000  # ms; a shared computer may be slow
 
 
@@ -253,7 +254,7 @@ def drop(page, *files):
 
 def test_machines_of_other_programs_are_imported_where_they_are_dropped(page, served, tmp_path):
     """Beside a recording too; a drawing without the length of its stack says what it lacks."""
-    home, sheet = served[1].parent, whole()
+    home, sheet = served[1].parent, runpy.run_path(DRAWINGS)["whole"]()
     drawing = sheet.saved(tmp_path).read_text()
     sheet.space.add_text("stack_mm = 120")
     sized = sheet.saved(tmp_path, "sized.dxf").read_text()
@@ -273,8 +274,8 @@ def test_machines_of_other_programs_are_imported_where_they_are_dropped(page, se
 
 @pytest.mark.parametrize("name", ["case.toml", "network.toml", "part.step", "photo.png"])
 def test_what_is_no_recording_is_said_by_its_name(page, served, name):
-    own = served[1] / name
-    drop(page, [name, own.read_text() if own.is_file() else "\0\1" * 99])
+    case_file = served[1] / name
+    drop(page, [name, case_file.read_text() if case_file.is_file() else "\0\1" * 99])
     page.wait_for_selector("#error")
     assert page.inner_text("#error").startswith(f"{name}: ")
     assert "it is no record" in page.inner_text("#error")

@@ -97,8 +97,8 @@ class Unfinished:
         grid = Table(
             "As far as the fit came", ["parameter", "before", "now", "unit"], rows, keep=["before", "now", "unit"]
         )
-        moved = counted(len(rows), "parameter")
-        sentence = f"Stopped before the fit converged: {moved} had moved; model.toml is as it was."
+        count = counted(len(rows), "parameter")
+        sentence = f"Stopped before the fit converged: {count} had moved; model.toml is as it was."
         more = f"thermoscope model calibrate {quote(called)} goes on from there"
         give({}, None, lambda: Summary(sentence, [grid], more))
         notes([f"stopped: the values reached so far are kept in {self.path}, and the same command goes on from them"])
