@@ -24,7 +24,7 @@ from geom.meshing.areas import PartRow as PartRow, part_table as part_table
 from geom.plugins import plugins as plugins
 from geom.table import Table as Table, TableResult as TableResult, cell as cell, percent as percent
 from geom.storage import cache_folder as cache_folder, write_whole as write_whole
-from geom.text import visible as visible
+from geom.text import counted as counted, visible as visible
 from fem.solvers.snapshots import Recipe as Recipe
 from lumped.build.pipeline import prepared as prepared, reduced as reduced
 from lumped.circuits.hydraulics import pressure_drop as pressure_drop, pumping_power as pumping_power

@@ -134,7 +134,7 @@ def events_table(events: Iterable[Document], likely: bool = True) -> Table:
         "What may have differed for a while" if likely else "Stretches in which hardly anything differed",
         [e for e in numbered if likely == (e["probability"] > LEAST_PROBABILITY)],
         "to add=add | when=words | odds=probability | most likely=effect | size=value | unit",
-        effect=lambda e: e["effect"].partition(" in ")[0],
+        effect=lambda e: value_words(e["effect"].partition(" in ")[0]),
         unit=unit_of,
         probability=_percent,
     )
@@ -201,11 +201,17 @@ def offers(diagnosis: Document) -> list[dict[str, Any]]:
     ]
     return [
         {
-            **{"kind": kind, "what": what, "separates": o["separates"], "gain": o["predicted_gain"]},
+            **{"kind": kind, "what": what, "gain": o["predicted_gain"]},
+            "separates": [*map(_pair_words, o["separates"])],
             **{"hours": o.get("hours"), "how": o.get("why") or currents(o.get("currents", []))},
         }
         for kind, o, what in rows
     ]
+
+
+def _pair_words(pair: str) -> str:
+    """Two explanations that a test would tell apart, in words."""
+    return " from ".join(map(value_words, pair.split(" / ")))
 
 
 def offers_table(rows: Iterable[Document]) -> Table:

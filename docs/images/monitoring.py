@@ -63,7 +63,8 @@ def fleet(folder: Path) -> None:
 
 def drawn(document: dict) -> None:
     units, odd = document["units"], {o["unit"]: o for o in document["outliers"]}
-    a, b = "link.jacket", "link.joint"
+    words = {"link.jacket": "jacket's film", "link.joint": "joint of stator and housing"}
+    a, b = words
     figure, axes = plt.subplots(figsize=(7, 5))
     for u in units:
         x, y = u["parameters"][a], u["parameters"][b]
@@ -80,11 +81,10 @@ def drawn(document: dict) -> None:
             color=colour,
         )
         if u["unit"] in odd:
-            axes.annotate(
-                f"{u['unit']}: {odd[u['unit']]['parameter']}", (x, y), textcoords="offset points", xytext=(8, 4)
-            )
-    axes.set_xlabel("jacket's film, times the declared")
-    axes.set_ylabel("joint of stator and housing, times the declared")
+            label = f"{u['unit']}: {words[odd[u['unit']]['parameter']]}"
+            axes.annotate(label, (x, y), textcoords="offset points", xytext=(8, 4))
+    axes.set_xlabel(f"{words[a]}, times the declared")
+    axes.set_ylabel(f"{words[b]}, times the declared")
     figure.tight_layout()
     figure.savefig(HERE / "fleet.png", dpi=110)
 

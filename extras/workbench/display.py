@@ -10,7 +10,6 @@ from extras.workbench import tables as rows
 from extras.workbench.appearance import Appearance
 from extras.workbench.live import state_and_picture
 from extras.workbench.machines import Bench
-from thermoscope import InputError
 from thermoscope import plugin as th
 
 CONFUSED = 8  # names that a row holds
@@ -50,7 +49,7 @@ START: dict[str, Any] = {
     "drop": None,
     "dragged": "",
     "made": "",
-    "imported": None,
+    "imported": [],
 }
 
 
@@ -122,16 +121,7 @@ class Display:
     def show_bench(self, file: Path) -> None:
         """What runs on the bench, or ran there last."""
         if (of_run := state_and_picture(file, self.theme)) is not None:
-            live, self.state.live_curve = of_run
-            odds = [{**o, "words": self._words(o["cause"])} for o in live["odds"]]
-            self.state.live = {**live, "odds": odds, "unseen": ", ".join(map(self._words, live["unseen"]))}
-
-    def _words(self, cause: str) -> str:
-        """A cause as the journal of a bench names it, as an engineer says it."""
-        try:
-            return th.added_words(self.bench.folder.case, cause.split(" + "))
-        except InputError:  # "nothing" and the like are words already
-            return cause
+            self.state.live, self.state.live_curve = of_run
 
     def show_candidates(self, diagnosis: dict[str, Any] | None) -> None:
         """The candidates of a diagnosis, or none."""

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import re
+import tempfile
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
@@ -13,6 +15,8 @@ from aiohttp import BodyPartReader, MultipartReader, web
 from thermoscope import InputError, Network
 from thermoscope import plugin as th
 
+DROP_PREFIX = "thermoscope-drop-"
+DROP_FOLDER = rf"{re.escape(tempfile.gettempdir())}.{DROP_PREFIX}\w+.[0-9a-f]{{32}}."  # of a file while it is read
 CHUNK = 2**20  # bytes: little memory, few system calls
 
 

@@ -32,7 +32,8 @@ def state_and_picture(file: Path, theme: th.Theme) -> tuple[dict[str, Any], dict
         "test": file.stem,
         "minutes": f"{run.minutes(last):.0f}",
         "odds": [
-            {"cause": th.value_words(n), "p": th.percent(p), "width": round(100.0 * p, 2)} for n, p in last["odds"]
+            {"code": n, "cause": th.value_words(n), "p": th.percent(p), "width": round(100.0 * p, 2)}
+            for n, p in last["odds"]
         ],
         "over": ", ".join(last["over"]),
         "unseen": [*map(th.value_words, last["unseen"])],

@@ -13,7 +13,7 @@ from extras.workbench import live, steps
 from extras.workbench import revisions as ledger
 from extras.workbench.appearance import Appearance
 from extras.workbench.display import Display
-from extras.workbench.dropped import Dropped
+from extras.workbench.dropped import DROP_FOLDER, Dropped
 from extras.workbench.jobs import FailedError, Job, StoppedError
 from extras.workbench.machines import Bench, Drawing
 from thermoscope import InputError, ThermoscopeError
@@ -138,17 +138,22 @@ class Session:
                 self.state.report = f"report.html?{time.time_ns()}"
 
     async def take_in(self, files: Sequence[Path]) -> None:
-        """Show what the columns of dropped files are taken for, or the machine in a file of another program."""
-        if len(files) == 1 and th.is_foreign_machine(files[0]):
-            home = self.folder.settings.path.resolve().parent
-            if (document := await self._calculate("Reading the machine", steps.machine, files[0], home)) is not None:
-                with self.state:
-                    self.state.imported, self.state.error = document, ""
+        """Show what the columns of dropped files are taken for, and the machines in files of other programs."""
+        if self.state.busy:
+            self._complain("the page is calculating: drop the files again when that has ended")
             return
-        dropped = await self._calculate(
-            "Reading the recordings", steps.recordings, files, self.folder.case.model.network
-        )
-        if dropped is not None:
+        home, imported = self.folder.settings.path.resolve().parent, list[dict[str, Any]]()
+        records = [file for file in files if not th.is_foreign_machine(file)]
+        for file in files:
+            if file not in records:
+                document = await self._calculate("Reading the machine", steps.machine, file, home)
+                if document is None:
+                    return
+                with self.state:
+                    imported.append(document)
+                    self.state.imported, self.state.error = [*imported], ""
+        network = self.folder.case.model.network
+        if records and (dropped := await self._calculate("Reading the recordings", steps.recordings, records, network)):
             self.show_dropped(dropped)
 
     def show_dropped(self, dropped: Dropped | None) -> None:
@@ -325,7 +330,7 @@ class Session:
 
     def _complain(self, message: str) -> None:
         with self.state:
-            self.state.error = message
+            self.state.error = re.sub(DROP_FOLDER, "", message)  # of a dropped file its own name
 
 
 def share(message: str) -> float | None:

@@ -98,12 +98,12 @@ def conclusion(diagnosis: Mapping[str, Any]) -> Row:
         f"{o['kind']} {o['what']}" + (f" ({o['how']})" if o["how"] else "") + f": separates {', '.join(o['separates'])}"
         for o in th.offers(diagnosis)[:3]
     ]
-    hidden_words = f"{len(hidden)} effects could be there unseen, e.g. {', '.join(hidden[:4])}." if hidden else ""
+    hidden_words = f"{th.counted(len(hidden), 'effect')} could be there unseen, e.g. {', '.join(hidden[:4])}."
     return {
         "tone": tone,
         "sentence": sentence,
         "words": diagnosis["words"],
-        "unseen": hidden_words,
+        "unseen": hidden_words * bool(hidden),
         "ahead": further_tests,
     }
 

@@ -20,7 +20,7 @@ from aiohttp import WSMsgType, web
 from aiohttp.http_exceptions import HttpProcessingError
 
 from extras.workbench.access_control import served
-from extras.workbench.dropped import stored
+from extras.workbench.dropped import DROP_PREFIX, stored
 from extras.workbench.machines import Bench
 from extras.workbench.session import Session, started
 from thermoscope import plugin as th
@@ -188,7 +188,7 @@ class Tabs:
         tab = self.open.get(request.match_info["tab"])
         if tab is None or not request.content_type.startswith("multipart/"):
             raise web.HTTPNotFound()
-        folder = Path(tempfile.mkdtemp(prefix="thermoscope-drop-"))
+        folder = Path(tempfile.mkdtemp(prefix=DROP_PREFIX))
         try:
             try:
                 files = await stored(await request.multipart(), folder, self.largest_drop)

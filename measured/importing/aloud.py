@@ -146,9 +146,8 @@ def _heat(draft: Draft, columns: Columns, left: Columns) -> dict[str, str]:
     if not heats:
         candidates = [g.column for r, g in left if {*quantities_of(r.source.labels[g.column])} & {*HEATS}]
         if candidates := candidates or ([best] if best and error < EXPLAINS else []):
-            return {
-                "heat": f"the only heat was left out: '{candidates[0]}'; --place {quote(f'{candidates[0]}=QUANTITY')}"
-            }
+            to = quote(f"{candidates[0]}=QUANTITY")
+            return {"heat": f"the only heat was left out: '{candidates[0]}'; --place {to}"}
         return {"heat": "no column says what heats it"}
     column, ours = _best(draft, columns, main)
     if not any(g.quantity in HEATS for _, g in heats):

@@ -125,7 +125,7 @@ def write_case(
 
 
 def set_aside(folder: Path, odd: Sequence[str]) -> None:
-    """Tests of a case that taught no network are not fitted, but tell what held in them: effects are chosen with them."""
+    """Tests that taught no network are not fitted: effects are chosen with them."""
     import tomlkit
 
     document: Any = tomlkit.parse((folder / "case.toml").read_text(encoding="utf-8"))

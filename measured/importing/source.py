@@ -31,6 +31,7 @@ from measured.recordings.units import MEMORY_UNIT, QUANTITIES, converted
 LONGEST = max(map(len, EMPTY))  # letters of a way to write that nothing was read
 TEXT = 0.2  # share of cells that are words from which a column holds no readings
 BINARY = (".tdms", ".mf4", ".parquet", ".mat", *(f".{name}" for name in READERS))
+MODELS = (".toml", ".step", ".stp", ".mot", ".dxf")
 UNNAMED = re.compile(r"column \d+")
 ONE_OF = re.compile(r"(?i)(?:phase|ph|coil|spule|sensor|channel|ch|kanal|strang)$")  # and a letter after it
 BRACKETED = re.compile(r"(.*?)\s*[\[(]([^\[\]()]*)[\])]")
@@ -120,6 +121,10 @@ def read_sources(file: Path) -> list[Source]:
     if not file.is_file():
         raise InputError("no such file", str(file), "a recording")
     suffix = file.suffix.lower()
+    if suffix in MODELS:
+        raise InputError(
+            "describes a machine or a model: it is no record", str(file), "readings over time, such as a CSV"
+        )
     if suffix in BOOKS:
         return _of_sheets(file)
     if suffix not in BINARY:

@@ -20,6 +20,7 @@ from thermoscope.case_folder.folder import load_case
 from thermoscope.commands.show.viewer import viewer_page
 from viz.colours import VERDICT
 from viz.data import sensors, short
+from viz.figures.candidates import posterior
 from viz.figures.errors import before_after
 from viz.figures.paper import svg
 
@@ -111,6 +112,7 @@ def test_the_odds_are_one_number(told):
     assert lead["probability"] == pytest.approx(best["probability"])
     assert rows.candidates(told["diagnosis"], ())[0]["score"] == odds
     assert numbers(told["diagnose"], r"(?m)^(.*?)  forced convection by vehicle wind at flange") == {odds}
+    assert f">\u00a0{odds}<" in unescape(svg(posterior(told["diagnosis"]["explanations"]), "odds")), "and the picture"
     code = rf'<code class="code">{EFFECT}</code>'
     assert re.search(rf"{code}</td><td>{re.escape(odds)}</td>", told["diagnosed page"])
 
@@ -132,6 +134,8 @@ def test_a_sensor_has_one_colour(told, stage):
                 over += 1
                 assert f'<span class="{CSS[bar["tone"]]}">over ({bar["tone"]})</span>' in html
     assert (over > 0) == (stage == "wrong")
+    (fell,), (left,) = (re.findall(rf"\.bar \.{part} {{ background: (.*?);", css) for part in ("was", "now"))
+    assert fell == left, "what fell is pale in the workbench as in the report, of one colour"
     assert {VERDICT[name].lower() for name in CSS} <= numbers(css.lower(), r"#[0-9a-f]{6}")
 
 

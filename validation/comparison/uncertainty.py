@@ -25,7 +25,7 @@ from validation.comparison.moved_inputs import moved_boundaries, moved_inputs
 from validation.comparison.predict import predict, record, thermal
 
 COVERAGE = 2.0  # standard uncertainties: 95 %
-RULE = f"within: rms up to {COVERAGE:g} u, u of reading, inputs and arithmetic"
+RULE = f"within: rms up to {COVERAGE:g} times the uncertainty of reading, inputs and arithmetic"
 
 
 @dataclass(frozen=True)

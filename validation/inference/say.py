@@ -49,6 +49,7 @@ Record = tuple[str, str]  # test and channel
 Pulls = Sequence[tuple[str, float, float]]
 ROWS, LEAST_ODDS = 20, 1e-4  # candidates in the table; odds below one in ten thousand are not listed
 LEAST_MEMBER = 0.02  # probability below which a member of a group is in the table, and not in the sentence
+CLAUSE = "; these tests and sensors cannot tell them apart"
 EVEN = 0.5  # probability from which that something is missing is more likely than not
 OFF = 2.0  # deviations of what a sensor and a good model allow, from which a record is called off
 MOST = 3  # records that stay off are told, worst first
@@ -441,7 +442,9 @@ def sentence(
         return f"heat is missing or in excess{place}; nothing in the catalogue explains it ({percent(choice.sure)})"
     heat = _leading_heat(posterior, rows)
     each = [_group_words(posterior, g, rows, () if i else heat) for i, g in enumerate(choice.groups)]
-    return "; ".join(each) + ("; check the measurement first" if verdict == "data" else "")
+    clause = CLAUSE if each[-1].endswith(CLAUSE) else ""  # once, at the end
+    words = "; ".join(w.removesuffix(clause) for w in each) + clause
+    return words + ("; check the measurement first" if verdict == "data" else "")
 
 
 def _leading_heat(posterior: Posterior, rows: Sequence[Candidate]) -> tuple[str, ...]:
@@ -469,7 +472,7 @@ def _group_words(posterior: Posterior, group: Group, rows: Sequence[Candidate], 
     members = [(k, p) for k, p in probability.items() if p >= LEAST_MEMBER or k in group[:2]]
     likely = [*heat, *(f"{by_name[e.names[k]].words} ({percent(p)})" for k, p in members)]
     likely += [f"{len(group) - len(members)} less likely ones"] * (len(group) > len(members))
-    return f"{' or '.join(likely)}; these tests and sensors cannot tell them apart"
+    return f"{' or '.join(likely)}{CLAUSE}"
 
 
 def impossible_words(effect: Effect, row: Candidate) -> str:
@@ -493,10 +496,13 @@ def unsteady_words(posterior: Posterior, choice: Decision) -> str:
     other = claim(d)
     if choice.withheld:
         return f"; {claim(choice.withheld)} is not named, since every second reading alone says {other}"
-    how = "not all are named: " if any(len(g) == 1 for g in choice.groups) else "no single name is given: "
+    single = any(len(g) == 1 for g in choice.groups)
+    how = "not all are named: " if single else "no single name is given: "
     claimed = "" if choice.verdict in ("adequate", "outside") else how
     if d.groups and d.groups == choice.groups:
-        return f"; {claimed}every second reading alone cannot tell them apart"
+        return (
+            f"; {how}every second reading alone cannot tell them apart" if single else "; nor can every second reading"
+        )
     return f"; {claimed}every second reading alone says {other}"
 
 

@@ -233,7 +233,7 @@ def _added(
             break
         name = supervisor.choose(diagnosis, choice)
         if name is None:
-            declined = f"not added: {' or '.join(c.words for c in choice)}"
+            declined = f"{' or '.join(c.words for c in choice)} {'were' if len(choice) > 1 else 'was'} not added"
             break
         for names in ((name,), needed_together(diagnosis, name)):
             if names and not any(_stands(case, one) for one in names):
@@ -245,7 +245,8 @@ def _added(
     further, document = further_step(case, supervisor, diagnosis, left_out, refused, progress)
     why = declined or first or diagnosis.words
     others = len(refused) - bool(first)
-    return further, document, f"{why}; {counted(others, 'other explanation')} did not predict either" if others else why
+    also = f"; tried and refused: {counted(others, 'other explanation')}" if others else ""
+    return further, document, why + also
 
 
 def _stands(case: Case, name: str) -> bool:

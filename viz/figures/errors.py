@@ -18,6 +18,7 @@ if TYPE_CHECKING:
 
 PALE = "#8DB9DB"
 TITLED = 0.93  # of an axis' height, from where on small words would run into the title
+BESIDE = 100.0  # points that the second label of two levels stands to the right: they may be close
 
 
 @paper.styled
@@ -82,17 +83,18 @@ def staircase(
     if floor_K is not None:
         _level(ax, floor_K, "sensors' uncertainty")
     if plain_K is not None and plain_K < ax.get_ylim()[1]:
-        _level(ax, plain_K, "best plain model")
+        _level(ax, plain_K, "best plain model", BESIDE)
     ax.set_xticks([0, *(i + 1 for i in range(len(history)))], ["start", *(_step_name(r) for r in history)])
     ax.grid(False, axis="x")
     ax.set(ylabel="rms error (K)", title="Error of every test; strong: never used")
     return paper.save(figure, png)
 
 
-def _level(ax: Axes, error_K: float, words: str) -> None:
-    """A dotted line at an error, with what it is: above it, or below where the title would be."""
+def _level(ax: Axes, error_K: float, words: str, right: float = 0.0) -> None:
+    """A dotted line at an error, with what it is: above it, or below where the title would be.  right : points"""
     ax.axhline(error_K, color=LIGHT.ink, lw=0.9, ls=":")
-    ax.text(0, error_K, words, fontsize=8, va="top" if error_K > TITLED * ax.get_ylim()[1] else "bottom")
+    side, of = "top" if error_K > TITLED * ax.get_ylim()[1] else "bottom", "offset points"
+    ax.annotate(words, (0, error_K), (right, 0), textcoords=of, fontsize=8, va=side)
 
 
 def error_paths(history: Sequence[Mapping[str, Any]]) -> dict[tuple[str, str], list[float]]:

@@ -46,7 +46,7 @@ def export_workbook(case: str, out: Path | None, form: str, target: str | None) 
         "files": [str(p) for p in paths],
         "worksheets": [table.title for table in content],
     }
-    th.give(document, target, lambda: th.Summary(f"{len(paths)} files written.", [str(p) for p in paths]))
+    th.give(document, target, lambda: th.Summary(f"{th.counted(len(paths), 'file')} written.", [str(p) for p in paths]))
     return 0
 
 
@@ -144,7 +144,6 @@ def export_summary(document: Mapping[str, Any]) -> th.Summary:
     lines = [f"Compiled for {', '.join(document['platforms'])}."] if document["platforms"] else []
     if differences := document["difference_K"]:
         test = max(differences, key=lambda t: differences[t])
-        lines.append(
-            f"Largest difference from simulate over {len(differences)} tests: {differences[test]:.2g} K ({test})."
-        )
+        tests = th.counted(len(differences), "test")
+        lines.append(f"Largest difference from simulate over {tests}: {differences[test]:.2g} K ({test}).")
     return th.Summary(sentence, [*lines, *document["files"]], "--json FILE")

@@ -117,7 +117,8 @@ def fleet_summary(document: Mapping[str, Any]) -> th.Summary:
     outliers, count = document["outliers"], len(document["units"])
     worst = "; ".join(f"{o['unit']} ({th.value_words(o['parameter'])} x {o['factor']:.2f})" for o in outliers[:3])
     names = dict.fromkeys(o["unit"] for o in outliers)
-    sentence = f"{count} motors; {len(names)} stand out: {worst}." if outliers else f"{count} motors; none stands out."
+    odd = f"{len(names)} stand{'s' * (len(names) == 1)} out: {worst}" if outliers else "none stands out"
+    sentence = f"{count} motors; {odd}."
     rows = [
         [
             o["unit"],

@@ -56,7 +56,7 @@ def export_observer(
         "outputs": [o.name for o in looks],
         "small_network_K": gap,
     }
-    sentence = f"An observer of {len(sensors)} sensors, {of.bytes} bytes from step to step."
+    sentence = f"An observer of {th.counted(len(sensors), 'sensor')}, {of.bytes} bytes from step to step."
     if gap:
         sentence += f" Its small network is within {max(gap.values()):.2g} K (rms) of the large one in the calibration."
     th.give(document, target, lambda: th.Summary(sentence, [str(p) for p in paths], "--json FILE"))

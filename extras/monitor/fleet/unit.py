@@ -24,7 +24,7 @@ ITERATIONS = 5  # of Gauss and Newton: a film at a third of its value takes four
 
 @dataclass(frozen=True)
 class Statistics:
-    """names (p,) of the parameters;  H (p, p), eta (p,) : see above, in fitting coordinates (log of the value)
+    """names (p,) of the parameters;  H (p, p), eta (p,) : see above, in fitting coordinates (log of a ratio)
 
     sd (p,) : of the parameters' priors, by which one motor alone was fitted;  drift_sd (p,) per year
     rmse_K : what the fit leaves;  samples : that it saw
@@ -64,16 +64,22 @@ def statistics(case: th.MeasuredCase, test: th.Test) -> Statistics:
     values = th.parameter_values(network, case.model.values)
     start = np.array([th.to_coordinate(p, values[p.name]) for p in unknowns.parameters])
     fit = th.minimise(network, one.tests, unknowns, start, None, values, ITERATIONS)
-    unit = np.array([p.name in free for p in unknowns.parameters], bool)
-    information, eta = fit.H.copy(), fit.H @ fit.theta
-    information[unit, unit] -= unknowns.sd[unit] ** -2.0
+    # an effect's size is fitted as it is: here what it is more by, in shares of the model's; of none there is no share
+    plain = np.array([p.mapping != "log" for p in unknowns.parameters], bool)
+    unit = np.array([p.name in free for p in unknowns.parameters], bool) & ~(plain & (start == 0.0))
+    origin, scale = np.where(plain & unit, start, 0.0), np.where(plain & unit, np.abs(start), 1.0)
+    information, eta = fit.H * np.outer(scale, scale), scale * (fit.H @ (fit.theta - origin))
+    prior = (unknowns.sd / scale) ** -2.0
+    information[unit, unit] -= prior[unit]
+    eta[unit] += (origin / scale * prior)[unit]
     share = np.linalg.solve(information[np.ix_(~unit, ~unit)], information[np.ix_(~unit, unit)]).T
     H = information[np.ix_(unit, unit)] - share @ information[np.ix_(~unit, unit)]
-    names = tuple(p.name for p in unknowns.parameters if p.name in free)
+    names = tuple(p.name for p, flag in zip(unknowns.parameters, unit, strict=True) if flag)
     r = np.concatenate([s.r for s in fit.parts])
     ages = np.array([_drift_sd(network, p) for p in unknowns.parameters])[unit]
     rmse = float(np.sqrt(np.mean(r**2)))
-    return Statistics(names, unknowns.sd[unit], ages, 0.5 * (H + H.T), eta[unit] - share @ eta[~unit], rmse, r.size)
+    sd, eta = (unknowns.sd / scale)[unit], eta[unit] - share @ eta[~unit]
+    return Statistics(names, sd, ages, 0.5 * (H + H.T), eta, rmse, r.size)
 
 
 def _drift_sd(network: Network, p: Parameter) -> float:

@@ -6,6 +6,7 @@ Screenshots are kept in out/screenshots.
 import json
 import os
 import re
+import runpy
 import shutil
 import subprocess
 import sys
@@ -14,8 +15,10 @@ from pathlib import Path
 from urllib.parse import urljoin
 
 import pytest
+from foreign_machines import motor_cad
 from test_serve_live import RUN as FIRST
 
+from geom.machine_file import load_machine
 from thermoscope.case_folder.history import load_history
 
 LOOKS = [
@@ -30,7 +33,8 @@ pytestmark = [
     pytest.mark.nightly,
     pytest.mark.skipif(BROWSER is None, reason="needs a browser: apt-get install -y chromium"),
 ]
-SERVER = Path(__file__).parents[2] / "shared" / "motor_case.py"
+TESTS = Path(__file__).parents[2]
+SERVER, DRAWINGS = TESTS / "shared" / "motor_case.py", TESTS / "geom" / "importing" / "drawings.py"
 LONG = 400_000  # ms; a shared computer may be slow
 
 
@@ -228,18 +232,59 @@ def test_a_run_on_the_bench_is_followed_and_told_that_it_is_done(root, page, ser
         journal.with_suffix(".done").unlink(missing_ok=True)
 
 
-DROP = """(text) => {
+DROP = """(contents) => {
   const files = new DataTransfer();
-  files.items.add(new File([text], "own.csv", { type: "text/csv" }));
-  document.querySelector("#errors").dispatchEvent(
-    new DragEvent("drop", { dataTransfer: files, bubbles: true, cancelable: true }));
+  for (const [name, text] of contents) files.items.add(new File([text], name));
+  const event = (kind) => new DragEvent(kind, { dataTransfer: files, bubbles: true, cancelable: true });
+  const over = document.querySelector("#errors").dispatchEvent(event("dragover"));
+  return !over && !document.querySelector("#errors").dispatchEvent(event("drop"));
 }"""
+RECORD = "\n".join(
+    ["time_s,I [A],wind [km/h],ambient,T_winding,channel 7"]
+    + [f"{10 * k},80,12,20.5,{20 + 0.2 * k:.1f},{20 + 0.1 * k:.1f}" for k in range(200)]
+)
+
+
+def drop(page, *files):
+    """Files by name and text, over the page and let go, as a browser tells it; taken over by the page, and read."""
+    with page.expect_response(lambda answer: answer.url.endswith("recordings")) as answering:
+        assert page.evaluate(DROP, [*files]), "else the browser leaves the page for the file"
+    assert answering.value.status == 204
+
+
+def test_machines_of_other_programs_are_imported_where_they_are_dropped(page, served, tmp_path):
+    """Beside a recording too; a drawing without the length of its stack says what it lacks."""
+    home, sheet = served[1].parent, runpy.run_path(DRAWINGS)["whole"]()
+    drawing = sheet.saved(tmp_path).read_text()
+    sheet.space.add_text("stack_mm = 120")
+    sized = sheet.saved(tmp_path, "sized.dxf").read_text()
+    drop(page, ["small.mot", motor_cad()], ["sized.dxf", sized], ["beside.csv", RECORD])
+    page.wait_for_selector("#imported")
+    page.wait_for_selector("#dropped")
+    assert page.inner_text("#dropped").startswith("beside.csv")
+    for name in ("small", "sized"):
+        assert str(home / f"{name}.toml") in page.inner_text("#imported")
+        assert load_machine(home / f"{name}.toml").name == name
+    drop(page, ["small.mot", motor_cad()])
+    page.wait_for_selector("#error:has-text('is there already')")
+    drop(page, ["drawn.dxf", drawing])
+    page.wait_for_selector("#error:has-text('how long the stack is')")
+    assert page.inner_text("#error").startswith("drawn.dxf: "), "not the folder in which it lay"
+
+
+@pytest.mark.parametrize("name", ["case.toml", "network.toml", "part.step", "photo.png"])
+def test_what_is_no_recording_is_said_by_its_name(page, served, name):
+    case_file = served[1] / name
+    drop(page, [name, case_file.read_text() if case_file.is_file() else "\0\1" * 99])
+    page.wait_for_selector("#error")
+    assert page.inner_text("#error").startswith(f"{name}: ")
+    assert "it is no record" in page.inner_text("#error")
+    assert page.locator("#sensors .sensor").count() == 3, "the page goes on"
 
 
 def test_dropped_files_become_a_case(page, served):
-    """Dropped on the page, a channel dragged to its part, written, and opened in place of the old case."""
-    rows = [f"{10 * k},80,12,20.5,{20 + 0.2 * k:.1f},{20 + 0.1 * k:.1f}" for k in range(200)]
-    page.evaluate(DROP, "\n".join(["time_s,I [A],wind [km/h],ambient,T_winding,channel 7", *rows]))
+    """A channel dragged to its part, written, and opened in place of the old case: the last test of that server."""
+    drop(page, ["own.csv", RECORD])
     page.wait_for_selector("#dropped")
     assert "T_winding" in page.inner_text("#part-winding")
     page.drag_and_drop("[id='column-channel 7']", "#part-flange")

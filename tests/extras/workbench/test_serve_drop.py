@@ -12,12 +12,16 @@ from aiohttp import ClientSession, CookieJar, FormData
 from foreign_machines import motor_cad
 from small_case import small_case
 from test_serve_access_control import TOKEN, running
+from trame.app import get_server
 
 from extras.workbench.access_control import AccessControl
 from extras.workbench.dropped import read, write
+from extras.workbench.machines import Bench
+from extras.workbench.session import Session
 from extras.workbench.steps import machine
 from geom.errors import InputError
 from geom.machine_file import is_foreign_machine, load_machine
+from measured.importing.source import read_sources
 from thermoscope.case_folder.folder import load_case
 
 HEAD = "Zeit;I [A];Wind [km/h];Raum;T Wicklung;Kanal 7;Bemerkung"
@@ -109,8 +113,6 @@ def test_a_case_beside_the_open_one(case, dropped):
 
 def upload(case, files, token=TOKEN, **options):
     """(status, what arrived) of a drop on a tab of the served case."""
-    from extras.workbench.session import Session
-
     seen = []
 
     async def take_in(self, files):
@@ -243,3 +245,18 @@ def test_json_is_a_machine_where_it_names_a_class(tmp_path):
         (tmp_path / "a.json").write_text(text)
         assert is_foreign_machine(tmp_path / "a.json") is so
     assert not is_foreign_machine(tmp_path / "a.csv")
+
+
+@pytest.mark.parametrize("name", ["model.toml", "part.STEP", "small.mot", "drawn.dxf"])
+def test_what_describes_a_machine_is_no_recording(tmp_path, name):
+    (tmp_path / name).write_text("1,2\n" * 9)
+    with pytest.raises(InputError, match="describes a machine or a model"):
+        read_sources(tmp_path / name)
+
+
+def test_a_drop_beside_a_calculation_is_refused_aloud(case):
+    """Not lost without a word."""
+    session = Session(Bench(load_case(case)), get_server("a tab"))
+    session.state.busy = True
+    asyncio.run(session.take_in([case / "own.csv"]))
+    assert "drop the files again" in session.state.error

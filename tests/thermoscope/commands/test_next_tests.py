@@ -1,6 +1,6 @@
 """What would decide is shown only where something would."""
 
-from validation.tables import next_tests
+from validation.tables import next_tests, offers
 
 
 def shown(**document):
@@ -9,6 +9,13 @@ def shown(**document):
 
 def planned(name, gain, *separates, **more):
     return {"test": name, "separates": list(separates), "predicted_gain": gain, "hours": 2.0, **more}
+
+
+def test_what_a_test_tells_apart_is_said_in_words():
+    pair = "convection.buoyant@heater2 / convection.constant@heater2"
+    (offer,) = offers({"next_tests": [planned("blower on", 44.0, pair)]})
+    film, steady = "natural convection growing with the rise", "steady extra cooling to ambient"
+    assert offer["separates"] == [f"{film} at heater2 from {steady} at heater2"]
 
 
 def test_a_test_that_separates_is_shown_and_the_others_are_not():

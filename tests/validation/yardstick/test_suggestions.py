@@ -1,7 +1,7 @@
 """What a free network knows and the declared one lacks, as effects with place and start."""
 
 import re
-from dataclasses import replace
+from dataclasses import make_dataclass, replace
 from types import SimpleNamespace
 
 import pytest
@@ -13,12 +13,15 @@ from validation.calibration.calibrate import no_progress
 from validation.comparison.compare import errors
 from validation.effects import effect
 from validation.parameters.unknowns import scene_of
-from validation.revision.improvement import Refusal, Step, Supervisor, best, ended, further_step
+from validation.revision.improvement import Refusal, Step, Supervisor, _added, best, ended, further_step
 from validation.yardstick.suggestions import suggested_effects
 from validation.yardstick.terms import Term
 from validation.yardstick.yardstick import yardstick
 
 SILENT = SimpleNamespace(groups=(), odds=(), verdict="outside")  # a diagnosis that names nothing
+
+
+Said = make_dataclass("Said", ["groups", "odds", "verdict", "named", "candidates", "words"])  # of a diagnosis
 
 
 def link(place, other, on, value, share=0.2, unit="W/K"):
@@ -173,3 +176,15 @@ def test_what_was_tried_last_is_a_table_and_one_clause_of_the_sentence(case):
     assert [r.what for r in refused] == [effect(o.effects[0]).statement for o in odds][: len(refused)]
     assert all(str(r) == f"not accepted: {r.what}, as {r.why}" for r in refused)
     assert refused
+
+
+def test_the_sentence_counts_what_the_table_of_refusals_lists(case, monkeypatch):
+    poorer, refused = without(case, ("body", "ambient")), list[Refusal]()
+    refusal = SimpleNamespace(accepted=False, checks=(), why="it predicts no better")
+    monkeypatch.setattr("validation.revision.improvement.add", lambda *anything: refusal)
+    odds = [SimpleNamespace(effects=(f"{kind}@core",), probability=0.2) for kind in ("mass", "loss.constant")]
+    said = Said((), odds, "outside", (), (), "nothing explains it")
+    step, _, why = _added(poorer, Supervisor(best, suggest=True), said, 9.0, refused, no_progress)
+    assert step is None
+    assert len({r.what for r in refused}) == len(refused) > 2
+    assert why == f"nothing explains it; tried and refused: {len(refused)} other explanations"

@@ -163,6 +163,17 @@ def test_words_at_a_level_do_not_run_into_the_title(share):
     assert not words.get_window_extent().overlaps(title.get_window_extent())
 
 
+LEVELS = ("sensors' uncertainty", "best plain model")
+
+
+def test_words_at_two_close_levels_stand_beside_each_other():
+    figure = errors.staircase(HISTORY, floor_K=0.6, plain_K=0.65)
+    figure.canvas.draw()
+    words = [t.get_window_extent() for t in figure.axes[0].texts if t.get_text() in LEVELS]
+    assert len(words) == 2
+    assert not words[0].overlaps(words[1])
+
+
 def test_staircase_path_starts_before_the_first_revision():
     assert errors.error_paths(HISTORY)["road-2", "hold-out"] == [6.4, 4.85, 0.93]
 

@@ -58,6 +58,8 @@ def test_every_public_result_is_a_table_and_a_frame():
     shown = [COMPARED, FOUND, network, steady, ts.effects(), ts.open("tclab")]
     assert all(isinstance(one, TableResult) for one in shown)
     assert all("<table>" in one._repr_html_() for one in [COMPARED, FOUND, steady, ts.effects(), ts.open("tclab")])
+    results = {t for n in dir(ts) if isinstance(t := getattr(ts, n), type) and not issubclass(t, Exception)}
+    assert all(issubclass(t, TableResult) for t in results - {ts.Effect, ts.Parameter, ts.Record})
     assert list(steady.to_frame()["degC"]) == [40.0, 20.0]
     assert list(FOUND.to_frame()["effect"]) == ["convection@flange"]
     assert {"title", "proof"} <= set(ts.effects().to_frame().columns)

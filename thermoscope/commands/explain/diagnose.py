@@ -10,6 +10,7 @@ from time import monotonic
 from typing import TYPE_CHECKING, Any
 
 from geom.table import cell
+from geom.text import counted
 from thermoscope.commands.model.error_budget import budget, in_short, sampling
 from thermoscope.commands.open_case import open_case
 from thermoscope.commands.stored_diagnosis import checked_diagnosis, save_diagnosis
@@ -131,7 +132,8 @@ def diagnosis_summary(document: Mapping[str, Any], called: str) -> Summary:
         f"{h['words']} {f'below {limit(h)}' if isfinite(h['smallest_detectable'] or inf) else 'at any size'}"
         for h in document["cannot_see"]
     ]
-    hidden_words = f"{len(hidden)} effects could be there unseen: {', '.join(hidden[:2])}, ..." if hidden else ""
+    hidden_words = f"{counted(len(hidden), 'effect')} could be there unseen: {', '.join(hidden[:2])}"
+    hidden_words = f"{hidden_words}{', ...' * (len(hidden) > 2)}" * bool(hidden)
     events, explained = document.get("events", []), document.get("explanations", [])
     explanations = tables.explanations_table(explained, partners=False)
     candidate_rows = tables.candidates_table(tables.weighty_candidates(candidates))
@@ -151,7 +153,7 @@ def diagnosis_summary(document: Mapping[str, Any], called: str) -> Summary:
     ]
     doubts = tables.doubts_table(document.get("doubts", []))
     rest = [tables.events_table(events, likely=False), doubts, *budget(budgets or {}, steps or {}), *hidden]
-    return Summary(sentence, parts, f"Next: thermoscope {step}; --json FILE; thermoscope show report {case}", rest)
+    return Summary(sentence, parts, f"next: thermoscope {step}; --json FILE; thermoscope show report {case}", rest)
 
 
 def question(document: Mapping[str, Any], case: str) -> str:

@@ -12,6 +12,7 @@ import typer
 
 from geom.errors import InputError
 from geom.table import Table
+from geom.text import counted
 from lumped.schemas.reader import suggestion
 from measured.sensors.operators import of_measurement
 from thermoscope.case_folder.folder import Folder
@@ -96,7 +97,8 @@ class Unfinished:
         grid = Table(
             "As far as the fit came", ["parameter", "before", "now", "unit"], rows, keep=["before", "now", "unit"]
         )
-        sentence = f"Stopped before the fit converged: {len(rows)} parameters had moved; model.toml is as it was."
+        count = counted(len(rows), "parameter")
+        sentence = f"Stopped before the fit converged: {count} had moved; model.toml is as it was."
         more = f"thermoscope model calibrate {quote(called)} goes on from there"
         give({}, None, lambda: Summary(sentence, [grid], more))
         notes([f"stopped: the values reached so far are kept in {self.path}, and the same command goes on from them"])

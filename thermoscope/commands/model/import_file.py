@@ -11,6 +11,7 @@ import typer
 
 from geom.importing.assumptions import TEMPLATES, USUAL_TEMPLATE
 from geom.importing.draft import ASSUMED, COPIED, UNUSED, Draft
+from geom.text import counted
 from lumped.machine.loss_sources import checked_losses
 from thermoscope.commands.model.machines import write_machine_file
 from thermoscope.console.options import Json, Out
@@ -79,5 +80,6 @@ def write_import(draft: Draft, text: str, folder: Path) -> Path:
 def import_summary(draft: Draft, target_file: Path) -> Summary:
     """How many values of each kind, and the table of them."""
     kinds: dict[str, Any] = {kind: sum(e.kind == kind for e in draft.entries) for kind in (COPIED, ASSUMED, UNUSED)}
-    sentence = f"{target_file}: {', '.join(f'{count} values {kind}' for kind, count in kinds.items())}."
+    values = ", ".join(f"{counted(n, 'value')} {kind}" for kind, n in kinds.items())
+    sentence = f"{target_file}: {values}."
     return Summary(sentence, [draft.table()], f"Next: thermoscope model build {quote(str(target_file))}; --json FILE")

@@ -12,6 +12,7 @@ import typer
 
 from geom.errors import InputError
 from geom.table import Table
+from geom.text import counted
 from measured.sensors.faults import broken_channels
 from thermoscope.case_folder.columns import checked_columns, write_columns
 from thermoscope.case_folder.folder import Folder
@@ -193,7 +194,7 @@ def revision_summary(document: Mapping[str, Any], folder: Folder, called: str) -
         _hidden_starts(document["parameters"]),
         *passed,
         _fixed(document["parameters"]),
-        f"The data do not fix {len(blind)} parameters: {few}" if blind else "",
+        f"The data do not fix {counted(len(blind), 'parameter')}: {few}" if blind else "",
     ]
     return Summary(
         " ".join(filter(None, [*_outcome_words(document), outcome])),

@@ -14,6 +14,7 @@ import numpy as np
 import viz as viz  # so named in the wheel as well
 from geom.description.names import file_stem
 from geom.errors import MissingDependency
+from geom.text import counted
 from measured.case import Case, Test
 from measured.sensors.sampling import sampled
 from thermoscope.case_folder import runs
@@ -103,7 +104,7 @@ def render(case: CaseName, out: Out = None, target: Json = None) -> int:
     if folder.built is None:
         notes(["this case has no geometry (a hand-declared network): no field and no recording"])
     document = {"case": folder.case.name, "files": [str(f) for f in files]}
-    give(document, target, lambda: Summary(f"{len(files)} files in {into}.", [str(f.name) for f in files]))
+    give(document, target, lambda: Summary(f"{counted(len(files), 'file')} in {into}.", [str(f.name) for f in files]))
     return 0
 
 

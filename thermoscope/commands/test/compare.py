@@ -129,10 +129,11 @@ def comparison_summary(document: Mapping[str, Any], called: str, doubts: str = "
         *(_reasons(document) if "patterns" in document else []),
         sensors_table("Over: error is measured - model", tests, "over"),
         first,
+        f"{RULE[0].upper()}{RULE[1:]}.",
         in_short(budgets, steps),
         roles_in_short(document["roles"]),
     ]
-    more = f"{RULE}; --why, --json FILE; thermoscope show report {quote(called)}"
+    more = f"--why, --json FILE; thermoscope show report {quote(called)}"
     before, verdict = [doubts, plain["warning"]], [document["words"], document.get("strained", "")]
     words = "\n".join(filter(None, (" ".join(filter(None, some)) for some in (before, verdict))))
     every = [*rest, *budget(budgets, steps), bands_table(document.get("bands", ()))]
@@ -153,8 +154,8 @@ def roles_in_short(records: Sequence[Mapping[str, Any]]) -> str:
     if not guesses:
         return ""
     unknown, how = sum(r["role"] is None for r in guesses), 'say role = "..." in network.toml'
-    which = f"{counted(len(guesses), 'role')}{f', {unknown} of them unknown' * bool(unknown)}"
-    return f"Guessed: {which}; effects are placed by roles: {how}."
+    which = f"{counted(len(guesses), 'node')}{f', {unknown} of them unknown' * bool(unknown)}"
+    return f"Roles are guessed by name of {which}; effects are placed by roles: {how}."
 
 
 def _reasons(document: Mapping[str, Any]) -> list[Table | str]:

@@ -17,6 +17,7 @@ from geom.errors import InputError
 from geom.escapes import toml_value
 from geom.storage import write_whole
 from geom.table import Table
+from geom.text import counted
 from lumped.model.quantities import INPUTS, USUAL
 from lumped.model.sites import ASSUMED
 from lumped.schemas.reader import suggestion
@@ -383,7 +384,7 @@ def new_case_summary(document: Mapping[str, Any]) -> Summary:
     columns = sorted(tests[0]["columns"], key=lambda c: (not _goes(c), not c["doubt"]))
     count = sum(bool(_goes(c)) for c in columns)
     sentence = (
-        f"{folder}: {len(tests)} {'test' if len(tests) == 1 else 'tests'}, {count} of {len(columns)} columns "
+        f"{folder}: {counted(len(tests), 'test')}, {count} of {len(columns)} columns "
         "used. All of this is guessed: change it in tests/*.toml."
     )
     sentence = "\n".join(filter(None, [" ".join(sentences(document["warnings"])), sentence]))

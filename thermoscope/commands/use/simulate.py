@@ -16,6 +16,7 @@ from geom.errors import InputError, ThermoscopeError
 from geom.escapes import csv_lines
 from geom.storage import write_whole
 from geom.table import Table
+from geom.text import counted
 from lumped.drives.coupled import coupled
 from lumped.integration.audit import Audit, audit
 from lumped.integration.runaway import checked_run
@@ -250,7 +251,8 @@ def _closing(run: Mapping[str, Any]) -> list[str]:
         for name, share in run["short_of"].items()
     ]
     if rounds := run["coupling"]["residuals_K"]:
-        lines.append(f"Drive and temperatures agree after {len(rounds)} rounds (last change {rounds[-1]:.2g} K).")
+        again = counted(len(rounds), "round")
+        lines.append(f"Drive and temperatures agree after {again} (last change {rounds[-1]:.2g} K).")
     return [
         *lines,
         f"{run['name']}: heat in - out - stored {run['energy_balance']:.1e} of the heat, losses injected "

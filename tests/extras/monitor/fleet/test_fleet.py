@@ -3,6 +3,7 @@
 import gzip
 import os
 import re
+import shutil
 import tracemalloc
 from dataclasses import replace
 
@@ -132,6 +133,17 @@ def test_each_recording_is_read_as_the_test_that_it_fits(thermoscope, root):
     done = thermoscope("use", "fleet", case, case / "tests", "--json", "-")
     assert len(headers) == 2
     assert (done.code, done.document["recordings"]) == (0, 3)
+
+
+def test_an_added_effect_counts_in_shares_of_its_size_in_the_model(thermoscope, root, tmp_path):
+    """Its size is fitted as it is, not by a logarithm: e to the 12 W/m2/K is no number of anything."""
+    case, effect = shutil.copytree(root / "cases" / "tclab", tmp_path / "tclab"), "convection.buoyant@heater1"
+    thermoscope("calibrate", case)
+    assert thermoscope("add", case, effect).code == 0
+    done = thermoscope("use", "fleet", case, case / "tests", "--json", "-")
+    (row,) = (p for p in done.document["parameters"] if p["name"] == effect)
+    assert 0.3 < row["mean"] < 3.0
+    assert all(0.1 < u["parameters"][effect] < 10.0 for u in done.document["units"])
 
 
 @pytest.mark.parametrize(
