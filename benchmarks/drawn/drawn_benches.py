@@ -208,28 +208,37 @@ def starved(rng: np.random.Generator) -> str:
     return "right" if found else f"{share:.0%} away in {which}; {said.verdict}: {said.words}"
 
 
-def loose(rng: np.random.Generator) -> str:
+def slipped(rng: np.random.Generator) -> str:
+    """The same, and the probe takes up to three minutes to get there by its own mass."""
+    return loose(rng, float(rng.uniform(5.0, 180.0)))
+
+
+def loose(rng: np.random.Generator, settles_s: float = 0.0) -> str:
     """A sensor slipped off in one of three tests, and read a mean of the part and the room from then on."""
     which, place, share = str(rng.choice(list("abc"))), str(rng.choice(["core", "shell"])), rng.uniform(0.2, 0.9)
     since = 20.0 * rng.integers(30, 200)
     case = recorded(rng, network(rng, {}), "abc", 20.0, lambda name: {})
 
-    def slipped(test: Test) -> Test:
+    def read(test: Test) -> Test:
         off = np.where(test.time >= since, share * (test.name == which), 0.0)
-        read = (
+        if settles_s:
+            off = off * -np.expm1(-np.maximum(test.time - since, 0.0) / settles_s)
+        channels = (
             replace(c, y=c.y + (off * (test.boundaries["ambient"] - c.y) if c.name == place else 0.0))
             for c in test.channels
         )
-        return replace(test, channels=tuple(read))
+        return replace(test, channels=tuple(channels))
 
-    case = replace(case, tests=tuple(map(slipped, case.tests)))
+    case = replace(case, tests=tuple(map(read, case.tests)))
     said = diagnose(case, plan=False)
     first = effect(said.groups[0][0]) if said.groups and len(said.groups[0]) == 1 else None
-    if isinstance(first, During) and first.base.name == f"sensor.loose@{place}" and first.tests == (which,):
+    names = f"sensor.loose@{place}", f"sensor.slip@{place}"
+    if isinstance(first, During) and first.base.name in names and first.tests == (which,):
         begin = first.event.every[0][0] if first.event else 0.0
         if abs(begin - since) <= CLOSE * 20.0:
             return "right"
-    return f"{share:.0%} at {place} in {which} from {since:.0f} s; {said.verdict}: {said.words}"
+    truth = f"{share:.0%} at {place} in {which} from {since:.0f} s, in {settles_s:.0f} s"
+    return f"{truth}; {said.verdict}: {said.words}"
 
 
 KINDS = {
@@ -237,6 +246,7 @@ KINDS = {
     "blocked": blocked,
     "starved": starved,
     "loose": loose,
+    "slipped": slipped,
     "lid": lid,
     "incubator": incubator,
     "probe": probe,

@@ -21,8 +21,9 @@ from lumped.model.sites import ambient
 from lumped.numerics.jit import entry
 from measured.case import Channel, Test
 
-OPERATORS = ("bias", "gain", "lag", "stem", "drift", "delay", "swap")
+OPERATORS = ("bias", "gain", "lag", "stem", "slip", "drift", "delay", "swap")
 SHIFTS = ("boundary", "initial")
+SLIP_S = 60.0  # time constant of a probe that hangs beside its part: beads take 10 s in air, sleeved ones minutes
 GAIN_ZERO = 20.0  # degC, at which sensors are compared
 STEP = {"lag": 0.05, "delay": 0.05}  # s, of a difference quotient; chosen, small beside any sample step
 Memory = dict[str, Array]
@@ -34,6 +35,14 @@ class While(NamedTuple):
     kind: str
     channel: str
     share: Array
+
+    @classmethod
+    def of(cls, kind: str, channel: str, time: Array, share: Array) -> While:
+        """time : (n_time,) s;  share : while it holds, which a sensor that slipped off follows"""
+        follows = share[:, None].copy()
+        if kind == "slip":
+            lag(time, follows, np.full(1, SLIP_S))
+        return cls(kind, channel, follows[:, 0])
 
 
 NOTHING: Mapping[str, While] = MappingProxyType({})
@@ -181,7 +190,7 @@ class Stretch:
                     every = every + now[key] * w.share.reshape(rows) * mine
             return every
 
-        stem, gain, bias, drift = each("stem"), each("gain"), each("bias"), each("drift")
+        stem, gain, bias, drift = each("stem") + each("slip"), each("gain"), each("bias"), each("drift")
         if stem.any() and self.air is not None:
             out += stem * (one * self.air.reshape(rows) - out)
         tau = np.array([c.lag_s for c in channels]) + each("lag").ravel()

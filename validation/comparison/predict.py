@@ -188,7 +188,7 @@ class Watch:
         self.course = Course(bare, test, heat, self.now, *moving, precision)
         every = {*self.now, *(target for p in tangents for target, _ in p.targets)}
         self.whiles = {
-            target: While(*channel_of(target), holds(target.rpartition(IN)[2], test))
+            target: While.of(*channel_of(target), test.time, holds(target.rpartition(IN)[2], test))
             for target in every
             if IN in target and target.startswith(SENSORS)
         }

@@ -44,8 +44,9 @@ Values = Mapping[str, float]
 EVERYWHERE = ("loss.constant", "convection.constant")  # at every node: a lid that is open cools what it never washed
 AS_DECLARED = ("conduction.bench", "flow", "blockage", "blockage.all", "input.factor")  # where the catalogue has them
 IN_WHOLE_TESTS = ("ambient.offset", "input.offset", "sensor.loose")
+LOOSENED = ("sensor.loose", "sensor.slip")  # at once, or as a probe does that is slow by itself
 CLOSE = 40  # samples around the most probable instant that a sensor slipped at: a block of readings is many of them
-LOOSE = 4  # sensors that may have come loose, in the tests that speak for it most, are asked when
+LOOSE = 8  # sensors that may have come loose, in the tests that speak for it most, are asked when
 SLIPPED = (0.0, 0.3, 0.6, 0.85)  # of a test, when one may have: from one to the next it shows half its change at least
 TESTS, EACH = 16, 6  # conditions of whole tests, and explanations of an event, that join the others
 EVENTS = 8  # that pay the price of when, what and where; more would be a matter of time, not of odds
@@ -89,7 +90,7 @@ def _catalogue(scene: Scene, names: Sequence[str]) -> list[Effect]:
 def check_names(case: Case, names: Iterable[str], where: str) -> None:
     """Refuse what is no kind, no "kind@place" that can be here, and not SENSORS, with the nearest that are."""
     scene, words = scene_of(case), (*kinds(), KIND, SENSORS)
-    effects = {e.name: e.kind for e in (*catalogue(scene), *single_test_effects(scene))}
+    effects = {e.name: e.kind for e in (*catalogue(scene), *single_test_effects(scene), *_catalogue(scene, LOOSENED))}
     for text in names:
         kind = next((k for k in words if text.startswith(f"{k}@")), "")
         if kind == KIND:
@@ -124,7 +125,7 @@ def conditions(
     for occurrence, rows in side_by_side(lambda s: explanations(evidence, bases, s, scan, values), intervals):
         events.append(occurrence)
         selection += best(rows, EACH)
-    sensors = [e for e in whole if e.kind == "sensor.loose"]
+    sensors = [e for e in _catalogue(scene, LOOSENED) if holds(e)]
     selection += best(loose_sensors(evidence, sensors, values, 0.5 / (len(bases) + len(sensors))), EACH)
     for name, share in declared_conditions(case, evidence, events):
         selection += best(tangent_worth(evidence, bases, name, share / len(bases), values), EACH)

@@ -230,12 +230,14 @@ def without_twins(e: Evidence, decision: Decision, claimed: Sequence[int]) -> De
 
 
 def is_same_event(one: Effect, other: Effect, whole: Mapping[str, Event] = NO_TESTS) -> bool:
-    """Is it the same effect, for about the same while, though in one of them it was again?
+    """Is it the same effect, or a variety of it, for about the same while, though in one of them it was again?
 
     whole : test -> the event that lasts all of it, for what held in a test
     """
-    if not (isinstance(one, During) and isinstance(other, During) and one.base == other.base):
+    if not (isinstance(one, During) and isinstance(other, During) and one.base.place == other.base.place):
         return one == other
+    if not (isinstance(one.base, type(other.base)) or isinstance(other.base, type(one.base))):
+        return False
     first, second = (x.event or whole.get(x.condition) for x in (one, other))
     if first is None or second is None:
         return one == other

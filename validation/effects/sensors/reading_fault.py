@@ -132,6 +132,15 @@ class SensorLoose(ReadingFault):
         return scene.channels if ambient(scene.network) else ()
 
 
+class SensorSlip(SensorLoose):
+    """The same, but its own mass takes a minute to get there (`measured.sensors.operators.SLIP_S`)."""
+
+    kind = "sensor.slip"
+    title = "sensor has come loose and settles slowly"
+    confused_with = ("sensor.loose", "convection.constant")
+    changes = "slip"
+
+
 class SensorDelay(ReadingFault):
     """Temperatures and inputs logged on two clocks: all readings of one test come a seconds late."""
 
