@@ -227,7 +227,7 @@ SAID = {
         lambda case: (case / "network.toml").write_text((case / "network.toml").read_text().partition("[losses")[0]),
         "the network has no loss: nothing heats it",
     ),
-    "a loss of nothing": (swap("network.toml", "R20_ohm = 0.02", "R20_ohm = 0"), "no loss of the network gives"),
+    "a loss of nothing": (swap("network.toml", COPPER, 'kind = "constant"\nP_W = 0'), "no loss of the network gives"),
     "an input nobody reads": (more(STAND, "[inputs]\nyoke = 20\n"), "no law of the model reads 'yoke'"),
 }
 

@@ -13,8 +13,8 @@ from measured.case import Recorded, Test
 from measured.doubt import USUAL
 
 STEP = 0.1  # of an input's largest value: a smaller change between two rows is a hundredth of the variance of a step
-MOST = 48  # moved by themselves in a test, hidden ones in account: of more, neighbours are moved together
-FEW, LARGE = 8, 30  # at least so many of each kind; as many in a network of more states than that: each costs a run
+MOST = 48  # moved by themselves in a test, and so many hidden ones: of more, neighbours are moved together
+FEW, LARGE = 8, 30  # so many in a network of more states than that: each costs a run of the model
 MOSTLY = 0.95  # of the rows with a step: three steps in the time of a row
 EDGE = 1e-3  # of the time between two rows: how long a step takes
 
@@ -66,9 +66,10 @@ def input_steps(test: Test, states: int = 0) -> list[InputStep]:
     most = np.take_along_axis(every, first[None], axis=0)[0]
     rows = np.flatnonzero(np.abs(most) > STEP)
     hidden = {n: size for n, d in change.items() if (size := _hidden_size(d)) > STEP}
-    limit = FEW if states > LARGE else max(MOST // (1 + len(hidden)), FEW)
+    limit = FEW if states > LARGE else MOST
+    each = max(limit // max(len(hidden), 1), FEW)
     groups = np.array_split(rows, min(limit, rows.size)) if rows.size else []
-    between = np.array_split(np.arange(time.size - 1), min(limit, time.size - 1))
+    between = np.array_split(np.arange(time.size - 1), min(each, time.size - 1))
     return [
         *(InputStep(g, most[g] / float(np.linalg.norm(most[g]))) for g in groups),
         *(

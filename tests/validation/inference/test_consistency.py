@@ -18,6 +18,8 @@ from validation.inference.say import OFF, remainder
 from validation.revision.revise import add
 from validation.scope import Scope
 
+SLIPS = ("sensor.loose", "sensor.slip")
+
 
 def moved_probe(share):
     """Nothing is missing, but in one test the core's probe sat between core and air.  share : of the way to the air"""
@@ -48,14 +50,14 @@ def test_what_a_probe_read_elsewhere_costs_its_fault_nothing():
 
 @pytest.fixture(scope="module")
 def found():
-    return diagnose(moved_probe(0.5), plan=False, scope=Scope(without=("sensor.loose",)))
+    return diagnose(moved_probe(0.5), plan=False, scope=Scope(without=SLIPS))
 
 
 @pytest.mark.parametrize("share", [1.0, 0.2])
 def test_a_record_is_off_by_no_more_than_parameters_that_follow_the_readings_leave(share, monkeypatch):
     """The most probable fit lets doubts forgive what parameters could mend; what is told is the lesser error."""
     case = moved_probe(0.5)
-    posterior = infer(case, scope=Scope(without=("sensor.loose",)))
+    posterior = infer(case, scope=Scope(without=SLIPS))
     fit = posterior.evidence.fit
     less = replace(fit, parts=tuple(replace(s, r=share * s.r) for s in fit.parts))
     monkeypatch.setattr("validation.inference.say.followed", lambda *_: less)
@@ -81,7 +83,7 @@ def test_a_probe_between_part_and_air_has_a_name():
 def test_a_record_far_beyond_its_uncertainty_is_not_adequate(found):
     """Half of a rise of 14 K at a sensor of 0.3 K, which no effect explains."""
     assert found.verdict == "outside"
-    assert found.words.startswith("as asked, without sensor.loose; core in dusk reads ")
+    assert found.words.startswith("as asked, without sensor.loose, sensor.slip; core in dusk reads ")
     assert "times its uncertainty: nothing in the catalogue explains it" in found.words
     assert "in that test the sensor or its place differed" in found.words
     assert found.named == ()

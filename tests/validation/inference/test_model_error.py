@@ -242,7 +242,7 @@ def test_neighbouring_steps_of_a_restless_input_are_moved_together():
     _, test, _ = heated(time, 100.0)
     restless = replace(test, inputs={"power": np.arange(time.size) % 2.0})
     steps = [s for s in input_steps(restless) if not s.hidden]
-    assert len(steps) == MOST // 2  # the others are for what no row shows
+    assert len(steps) == MOST
     assert sum(s.row.size for s in steps) == time.size - 1
     for s in steps:
         assert np.sum(s.share**2) == pytest.approx(1.0)
