@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 Span = tuple[float, float]
 NUMBER = r"\d+(?:\.\d+)?"
 PIECE = re.compile(rf"(.+):({NUMBER}-{NUMBER}(?:,{NUMBER}-{NUMBER})*)s")
-OTHERS = re.compile(r"all but (.+)")
+OTHERS = "all but "
 ALIKE = 0.5  # of the time in either of two events is in both: such are one, its ends read otherwise
 AND = " & "
 IN = " in "  # between an effect or a boundary and the condition it holds in
@@ -91,8 +91,13 @@ def event(name: str) -> Event | None:
 
 def odd_tests(condition: str) -> tuple[str, ...]:
     """The tests that a condition leaves out where it is "all but a & b": it holds in every other, seen or not."""
-    others = OTHERS.fullmatch(condition)
-    return tuple(others[1].split(AND)) if others else ()
+    others = condition.removeprefix(OTHERS)
+    return tuple(others.split(AND)) if others != condition else ()
+
+
+def all_but(tests: Iterable[str]) -> str:
+    """The condition that leaves some tests out; `odd_tests` reads it."""
+    return f"{OTHERS}{AND.join(tests)}"
 
 
 def checked(occurrence: Event, test: str, first: float, last: float, where: str) -> None:

@@ -27,7 +27,7 @@ from validation.effects.above import KIND, Above
 from validation.effects.base import Effect, Scene
 from validation.effects.during import During
 from validation.effects.registry import catalogue, effect, kinds
-from validation.effects.time_window import ALIKE, AND, Event, event
+from validation.effects.time_window import ALIKE, Event, all_but, event
 from validation.inference.columns import amplitudes, effect_columns
 from validation.inference.events import TimedEvent, predicted_repeats, time_around, timed_event
 from validation.inference.evidence import Evidence, Progress
@@ -207,7 +207,7 @@ def set_condition(tests: Sequence[Test], subset: Sequence[int]) -> str:
     if len(some) == 1:
         return some[0].name
     if 2 * len(some) > len(tests):
-        return f"all but {AND.join(t.name for i, t in enumerate(tests) if i not in subset)}"
+        return all_but(t.name for i, t in enumerate(tests) if i not in subset)
     return Event.of({t.name: [(float(t.time[0]), float(t.time[-1]))] for t in some}).name
 
 

@@ -210,11 +210,8 @@ def _at_place(source: Source, g: Guess, place: str) -> Guess:
     """A column of a first network at the place that --place says; an input keeps what was guessed of it."""
     if place == g.feeds or not source.is_numeric(g.column):
         return g
-    free, target = (
-        replace(g, quantity="", feeds=""),
-        Target({place: None} if place and place not in {*INPUTS, *USUAL} else {}),
-    )
-    return assigned([free], source, g.column, place, target)[0]
+    free, part = replace(g, quantity="", feeds=""), place and place not in {*INPUTS, *USUAL}
+    return assigned([free], source, g.column, place, Target({place: None} if part else {}))[0]
 
 
 def _drafts(read: Sequence[tuple[Source, Clock]], model: Model, wishes: Wishes) -> list[Draft]:
@@ -293,8 +290,8 @@ def save_case(folder: Path, model: Model, drafts: list[Draft], tell: Progress) -
             first = learn_network(Case(folder.name, CaseModel(network), tuple(tests)), model.first)
             model = replace(model, first=first)
             write_whole(partial / "network.toml", first.text())
-            odd = [d for d in documents if d["role"] != "hold-out" and first.learnt and d["name"] not in first.learnt]
-            set_aside(partial, [d["name"] for d in odd])
+            if odd := _odd_tests(documents, first.learnt):
+                set_aside(partial, [d["name"] for d in odd])
             for d in odd:
                 d["role"] = "validate"
     return {
@@ -419,6 +416,11 @@ def _moved(tests: Sequence[Mapping[str, Any]]) -> list[str]:
     ]
 
 
+def _odd_tests(tests: Sequence[dict[str, Any]], learnt: Sequence[str]) -> list[dict[str, Any]]:
+    """Tests that may be fitted and taught the first network nothing; none where it was not learnt."""
+    return [t for t in tests if learnt and t["role"] != "hold-out" and t["name"] not in learnt]
+
+
 def _remarks(document: Mapping[str, Any]) -> list[str]:
     """What was assumed, and what looks wrong."""
     tests = document["tests"]
@@ -428,10 +430,10 @@ def _remarks(document: Mapping[str, Any]) -> list[str]:
             "no machine and no network was given: network.toml holds the fewest links and losses that predict what was "
             "left out; how large they are together is assumed"
         )
-        odd = [t["name"] for t in tests if t["role"] != "hold-out" and t["name"] not in document["learnt_from"]]
-        if odd:
+        if odd := _odd_tests(tests, document["learnt_from"]):
+            names = ", ".join(t["name"] for t in odd)
             remarks.append(
-                f"not learnt from {', '.join(odd)}: without that the others predict each other far better. It is not "
+                f"not learnt from {names}: without that the others predict each other far better. It is not "
                 "fitted, effects are chosen with it"
             )
     elif document["invented_network"]:
