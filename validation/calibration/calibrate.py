@@ -485,14 +485,15 @@ def with_model_error(
     doubt: Doubt = USUAL,
     iterations: int = 0,
     draft: bool = False,
+    steps_like: ModelError | None = None,
 ) -> Fit:
     """The fit where it stands, or gone on, with what a model of this kind gets wrong added to the noise.
 
     values : of what is not free.  Predictions are best by the parameters that follow the readings; how sure these are,
-    and what is missing beside them, depends on the model error.
+    and what is missing beside them, depends on the model error.  steps_like : see `model_error`
     """
     fixed = {**values, **fit.values}
-    error = model_error(fit.network, tests, fixed, doubt)
+    error = model_error(fit.network, tests, fixed, doubt, steps_like=steps_like)
     noise = fit_noise(InnerProduct(fit.parts, fit.noise, error).explained(fit.parts, error))
     return minimise(
         fit.network,

@@ -284,6 +284,10 @@ class ModelError:
         """How many columns are the model's: the first."""
         return self.size - self.steps
 
+    def late(self, parts: Sequence[Segment]) -> dict[str, Array]:
+        """Channel -> (n, steps): what steps of the inputs do in a test."""
+        return {s.channel: self.of(s)[:, self.model_columns :] for s in parts}
+
     def bounded(self, most: float) -> ModelError:
         """With the model's columns of each record scaled down together to `most` (K, one sigma) in sum."""
         scaled = {
@@ -305,6 +309,7 @@ def model_error(
     values: Mapping[str, float],
     doubt: Doubt = USUAL,
     sensed: Sequence[Test] = (),
+    steps_like: ModelError | None = None,
 ) -> ModelError:
     """The model error of a network at some values of its parameters, over the instants of its tests' segments.
 
@@ -312,6 +317,8 @@ def model_error(
     together; of its own rise would not do, for beside a hot part a cool one is off by what the hot one makes.
 
     sensed : tests whose sensors' placement is in doubt, and whose largest load counts; by default `tests`
+    steps_like : the model error of the same tests by a network that is nearly this one. What its input steps do is
+        taken over: they are in doubt by a share of a sample, and each of them asks for a run
     """
     larger, doubts = with_doubts(network, doubt, sensed or tests)
     steps = {t.name: input_steps(t, len(network.states)) for t in sensed or tests}
@@ -324,7 +331,7 @@ def model_error(
         beside = placements(network, test, values, doubt, sensed or tests)
         here = np.array([float(t.name == test.name) for t in sensed or tests])
         flow = of_inputs(network, test, values, doubt, parts, here)
-        late = of_steps(network, test, values, doubt, parts, steps)
+        late = of_steps(network, test, values, doubt, parts, steps) if steps_like is None else steps_like.late(parts)
         columns = {
             s.channel: np.column_stack([s.J * scale, beside[s.channel], flow[s.channel], late[s.channel]])
             for s in parts

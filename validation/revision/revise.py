@@ -22,6 +22,7 @@ from measured.sensors.faults import broken_channels, without
 from measured.sensors.operators import of_measurement
 from validation.calibration.calibrate import Fit, no_progress, with_model_error
 from validation.calibration.intervals import Estimate, Profile, estimates
+from validation.calibration.model_error import ModelError
 from validation.calibration.profile import profiles
 from validation.calibration.staged_fit import Search, belongs, merged, staged_fit
 from validation.comparison.compare import Comparison, errors, physical
@@ -236,8 +237,9 @@ def _revised(
         Change(b.name, b.role, b.rmse_K, a.rmse_K, b.fitted_rmse_K, a.fitted_rmse_K, sum(c.seconds for c in a.channels))
         for b, a in zip(before.tests, after.tests, strict=True)
     )
-    sure = [_sure(fit, tests, new, case) for fit in fits]
     progress("predicting what was left out")
+    alike = _fit_before(case)[0].error if action == "add" else None
+    sure = [_sure(fit, tests, new, case, alike) for fit in fits]
     if action == "add" and name:
         acceptance = _effect_checks(case, sure[-1], name.split(TOGETHER), new, together, changes)
     else:
@@ -397,9 +399,9 @@ def _values(model: Model, fits: Sequence[Fit]) -> dict[str, float]:
     return out
 
 
-def _sure(fit: Fit, tests: Sequence[Test], model: Model, case: Case) -> Fit:
+def _sure(fit: Fit, tests: Sequence[Test], model: Model, case: Case, steps_like: ModelError | None = None) -> Fit:
     """A stage's fit with the model error in its covariance."""
-    return with_model_error(fit, *_conditions(fit, tests, model), case.doubt)
+    return with_model_error(fit, *_conditions(fit, tests, model), case.doubt, steps_like=steps_like)
 
 
 def _profiled(
