@@ -125,9 +125,12 @@ def commutators(network: Network) -> list[str]:
 
 
 def heated(network: Network, kind: str, others: Collection[str]) -> list[str]:
-    """Places that carry a loss of this kind, else the others."""
-    places = {s.place: None for s in network.sources if s.kind == kind and not s.origin and s.place in network.places}
-    return list(places) or list(others)
+    """Places of a loss of this kind, and nodes that it heats by whatever share; without such a loss, the others."""
+    sources = [s for s in network.sources if s.kind == kind and not s.origin]
+    warm = {int(i) for s in sources for i in s.index[s.weights > 0.0]}
+    places = [s.place for s in sources if s.place in network.places]
+    shares = [p.name for p in solids(network) if p.kind == "node" and p.part not in places and p.states[0] in warm]
+    return list(dict.fromkeys([*places, *shares])) or list(others)
 
 
 def across_air(network: Network, a: str, b: str) -> bool:
@@ -183,12 +186,17 @@ def neighbours(network: Network) -> dict[str, set[str]]:
 def near_pairs(network: Network) -> Iterable[tuple[str, str]]:
     """Pairs of solids that no link joins: where a bridge may have been forgotten.
 
-    They share a neighbour, or one of them has no solid neighbour at all; nothing solid bridges an air gap.
+    They share a solid neighbour, or one of them has none. Or both stand, or both turn, and one fluid washes both, or
+    leads may join them: a winding and a part that the surroundings wash. Nothing solid bridges an air gap.
     """
     around, names = neighbours(network), [p.name for p in solids(network)]
-    solid = {a: around.get(a, set()) & set(names) for a in names}
+    inside = {a: around.get(a, set()) - set(network.boundaries) for a in names}
+    solid = {a: near & set(names) for a, near in inside.items()}
+    wound, outer = with_role(network, Role.WINDING), outside(network)
     for i, a in enumerate(names):
         for b in names[i + 1 :]:
-            alone = not solid[a] or not solid[b]
-            if b not in solid[a] and (alone or solid[a] & solid[b]) and not across_air(network, a, b):
+            near = not solid[a] or not solid[b] or solid[a] & solid[b]
+            led = (a in wound and b in outer) or (b in wound and a in outer)
+            close = turns(network, a) == turns(network, b) and (led or inside[a] & inside[b])
+            if b not in solid[a] and (near or close) and not across_air(network, a, b):
                 yield a, b

@@ -37,7 +37,7 @@ class Bridge(Effect):
 
 
 class Coupling(Bridge):
-    """A conductance a (W/K) between two parts that share a neighbour but are not joined in the network."""
+    """A conductance a (W/K) between two parts near each other that are not joined in the network."""
 
     kind = "coupling"
     title = "thermal bridge"
