@@ -113,7 +113,8 @@ def on_one_clock(source: Source) -> Source:
     """With every reading at its own instant where each signal stands behind a clock of its own, and a note; to the end
     of the one that ends first.
 
-    As it is where the clocks are one, or begin apart: those are two clocks of one row.
+    As it is where the clocks are one, or begin apart: those are two clocks of one row.  InputError where signals that
+    share no rows share no time either.
     """
     names = list(source.cells)
     at = [i for i, name in enumerate(names) if is_second_clock(source, name)]
@@ -127,9 +128,11 @@ def on_one_clock(source: Source) -> Source:
         return source
     step = max(float(b[1] - b[0]) for b in begins)
     one = all(np.allclose(s, seconds[0], rtol=0.0, atol=0.5 * step, equal_nan=True) for s in seconds)
-    if one or any(abs(b[0] - begins[0][0]) > 2 * step for b in begins):
+    if one or (not source.apart and any(abs(b[0] - begins[0][0]) > 2 * step for b in begins)):
         return source
     end = min(float(np.nanmax(s)) for s in seconds)
+    if end <= max(b[0] for b in begins):
+        raise InputError("its signals never run at one time", str(source.file), "a workbook of one test")
     signals = [
         (name, t[(good := t <= end)], source.numbers(name)[good])
         for group, t in zip(groups, seconds, strict=True)

@@ -15,6 +15,7 @@ from lumped.model.quantities import AIR, INPUTS, LIQUID, USUAL
 from lumped.schemas.bounds import COLDEST, HOTTEST
 from measured.headers.cells import is_unit, unit_of
 from measured.headers.words import (
+    CABINET,
     EXTREME,
     INLET,
     INSTRUMENT,
@@ -47,7 +48,7 @@ from measured.headers.words import (
 from measured.importing.clock import is_second_clock
 from measured.importing.relations import SAME, START_K, functional_relations, is_like_temperature, is_product, quickness
 from measured.importing.source import Source
-from measured.importing.target import Target
+from measured.importing.target import Target, measure_of
 from measured.recordings.invalid_readings import FAR, LARGEST_THERMOCOUPLE, coded
 from measured.recordings.units import LARGEST, QUANTITIES, ROOM_F, ROOM_K, SWITCHED, converted
 
@@ -102,6 +103,9 @@ FUNCTION = "made of other columns"
 OF_SENSOR = "of a sensor"
 AS_WINDING = "taken as the winding"
 FASTEST, OF_STATOR = (f"{why}: {AS_WINDING}" for why in ("follows the heat fastest", "of the stator"))
+AS_ROOM = "taken as the room, as no other column is: is the machine in there?"
+AS_FLOW = "the speed of a fan: taken as a flow, of which only the changes count"
+ON_OFF = "on and off, by its values alone: heat, cooling, or neither?"
 AS_SPEED = "no speed was recorded: the frequency of the supply, as of one pole pair"
 LARGEST_HZ = 1000.0  # of a supply; inverters for motors switch faster
 QUICK = 0.6  # of the fastest: windings of the same machine
@@ -146,14 +150,14 @@ class Guess:
 def guesses(source: Source, clock: Sequence[str], target: Target) -> list[Guess]:
     """One per column that is no clock."""
     every = _by_readings(source, [guess(source, c, target) for c in source.cells if c not in clock], target)
-    every = _cold_start_outliers(source, _read(source, _without_functions(source, every)))
+    every = _cold_start_outliers(source, _read(source, _without_functions(source, every), target))
     kelvin = sum(g.unit == "K" for g in every if g.quantity == "temperature")
     axes = {axis for g in every if g.quantity == "current" and (axis := axis_of(source.labels[g.column]))}
     both = {axis for pair in AXES if pair <= axes for axis in pair} - {axis_of(name) for name in target.inputs}
     for i, g in enumerate(every):  # a component has an input of its own: the current is the root sum square of both
         if g.feeds and (axis := axis_of(source.labels[g.column])) in both:
             every[i] = replace(g, feeds=f"{axis}_A")
-    every = _products(source, _with_speed(source, every, target), target)
+    every = _with_switches(source, _products(source, _with_speed(source, every, target), target))
     every = _quickest(source, every, target)
     return _of_one(source, single(every if kelvin else _in_fahrenheit(source, every), target, source.labels))
 
@@ -247,6 +251,18 @@ def _with_speed(source: Source, every: list[Guess], target: Target) -> list[Gues
     return every
 
 
+def _with_switches(source: Source, every: list[Guess]) -> list[Guess]:
+    """With what is on and off under no known name as an input, unless another input parts the two as well."""
+    for i, g in enumerate(every):
+        if g.doubt == UNTOLD and {*(on := source.numbers(g.column))[np.isfinite(on)]} == {0.0, 1.0}:
+            inputs = [source.numbers(other.column) for other in every if other.feeds]
+            pairs = [(x[on == state], x[on == 1 - state]) for x in inputs for state in (0, 1)]
+            if not any(np.fmax.reduce(a, initial=-np.inf) < np.fmin.reduce(b, initial=np.inf) for a, b in pairs):
+                switch = replace(g, quantity="share", unit="1", why="values", doubt=ON_OFF)
+                every[i] = replace(switch, feeds=input_name(switch))
+    return every
+
+
 def _is_plain(source: Source, g: Guess) -> bool:
     """May its numbers be those of other columns, whatever it is called?"""
     return source.is_numeric(g.column) and g.why != SUREST and (g.used or g.doubt in ("", UNTOLD))
@@ -262,8 +278,9 @@ def _of_one(source: Source, every: list[Guess]) -> list[Guess]:
     return [replace(g, doubt=SEVERAL) if g.quantity == "speed" and g.feeds else g for g in every]
 
 
-def _read(source: Source, every: list[Guess]) -> list[Guess]:
-    """Without the temperatures that a model made, that never change, and extremes, where others were read."""
+def _read(source: Source, every: list[Guess], target: Target) -> list[Guess]:
+    """Without the temperatures that a model made, that never change, and extremes, where others were read; the air
+    of a cabinet is the room where no other column is and all parts are warmer."""
     words = {g.column: {*tokens(source.labels[g.column])} for g in every if g.used}
     means = [words[c] - MEAN for c in words if not words[c] & EXTREME]
     every = [
@@ -287,6 +304,13 @@ def _read(source: Source, every: list[Guess]) -> list[Guess]:
         if not (roles_of(label) or is_spoken(label, MACHINE))
     }
     rest = [g for g in every if g.column in parts and g.quantity and g.column not in instruments]
+    means = {g.column: np.nanmean(in_memory(source, g)) for g in every if g.column in parts and g.quantity}
+    coldest = min(means, key=lambda c: means[c], default="")
+    edges = [b for b, role in target.boundaries.items() if role is Role.AMBIENT] if target.places else ["ambient"]
+    has_room = any(Role.AMBIENT in roles_of(label)[:1] for label in hot.values())
+    if rest and coldest in instruments and is_spoken(hot[coldest], CABINET) and edges and not has_room:
+        every = [replace(g, place=edges[0], doubt=AS_ROOM) if g.column == coldest else g for g in every]
+        instruments -= {coldest}
     warmest = max((np.nanmax(in_memory(source, g)) for g in rest), default=np.inf)
     if any(is_spoken(hot[g.column], MACHINE) or roles_of(hot[g.column]) for g in rest):
         warmest = np.inf
@@ -335,6 +359,9 @@ def guess(source: Source, column: str, target: Target) -> Guess:
         return _fed(Guess(column, "flow_share", "1", why="name", doubt=STAGES), label, target)
     if quantity == "temperature" and not worded and whole:
         return Guess(column, "", doubt="a state, by its values")
+    of_fan = quantity == "speed" and AIR in quantities_of(label) and not is_spoken(label, MACHINE)
+    if of_fan and target.input_of(label, quantity) in ("", INPUTS["speed"]):
+        quantity, unit, doubt = "flow_share", "%", AS_FLOW
     unit, assumed = _unit(source, column, quantity, unit)
     if not unit_text and (match := FOREIGN.search(label) or ROUND.search(label)) and quantity != "temperature":
         if quantity == "speed" and not set(tokens(match[1])) & REMARK_WORDS:  # of a vehicle, or a counter
@@ -625,13 +652,14 @@ def _moved(g: Guess, source: Source, to: str, target: Target) -> Guess:
         quantity = "temperature"
     elif to in target.inputs:
         quantity = target.inputs[to] or g.quantity
-    elif to in USUAL:
-        quantity = USUAL[to]
+    elif own := USUAL.get(to) or measure_of(to):
+        quantity = own
     else:
         raise InputError(f"the model has no '{to}'", g.column, ", ".join([*target.places, *target.inputs][:8]))
-    if g.quantity and quantity != g.quantity:
+    if g.quantity and quantity != g.quantity and g.doubt not in (ON_OFF, AS_FLOW):
         raise InputError(f"is a {g.quantity}, '{to}' wants a {quantity}".replace("_", " "), g.column, "another column")
-    unit = g.unit if g.unit in QUANTITIES[quantity].units else _unit(source, g.column, quantity, "")[0]
+    units = [unit for unit in (g.unit, unit_of(source.units[g.column])) if unit in QUANTITIES[quantity].units]
+    unit = units[0] if units else _unit(source, g.column, quantity, "")[0]
     place, feeds = (to, "") if quantity == "temperature" and to not in target.inputs else ("", to)
     return replace(g, quantity=quantity, unit=unit, place=place, feeds=feeds, why=OF_USER, doubt="")
 
@@ -639,7 +667,7 @@ def _moved(g: Guess, source: Source, to: str, target: Target) -> Guess:
 def input_name(g: Guess) -> str:
     """An input called after the column, with the unit that memory holds."""
     unit = QUANTITIES[g.quantity].feeds.rpartition("_")[2]
-    words = [w for w in tokens(g.column) if w.isascii()]
+    words = [w for w in tokens(g.column) if w.isascii() and w != unit.lower()]
     return "_".join([*words, unit]) if words else f"{g.quantity}_{unit}"
 
 

@@ -18,9 +18,9 @@ from geom.arrays import Array
 from geom.description.names import plain_header
 from geom.description.roles import Role
 from geom.errors import InputError
-from measured.headers.cells import EMPTY, SWITCH, WITH_UNIT, is_unit, number, split_unit, unit_of
+from measured.headers.cells import EMPTY, SWITCH, WITH_UNIT, is_date, is_unit, number, split_unit, unit_of
 from measured.headers.rows import UNIT_NAMES, Layout, layout, transposed, trimmed
-from measured.headers.words import is_rise, is_time, quantities_of, roles_of, without_rise
+from measured.headers.words import RUNS, is_rise, is_time, quantities_of, roles_of, tokens, without_rise
 from measured.importing.long_table import side_by_side
 from measured.importing.text import text_table
 from measured.recordings.csv_file import CHUNK
@@ -53,12 +53,14 @@ class Source(DataTable):
 
     labels : column -> its name without the unit;  units : also those that stand in the names
     unnamed : the file has no header;  period_s : between rows, by its preamble
+    apart : rows of different signals have nothing in common, for each signal stands behind its clock
     """
 
     file: Path = Path()
     labels: Mapping[str, str] = field(default_factory=dict)
     unnamed: bool = False
     period_s: float | None = None
+    apart: bool = False
     values: dict[str, Array] = field(default_factory=dict, compare=False, repr=False)
 
     def numbers(self, column: str) -> Array:
@@ -112,7 +114,7 @@ def read_source(file: Path) -> Source:
 
 
 def read_sources(file: Path) -> list[Source]:
-    """Any file a recorder writes; of a workbook all sheets with the columns of the largest.
+    """Any file a recorder writes; of a workbook all sheets with the columns of the largest, or with its other signals.
 
     InputError where it is no record, MissingDependency where a package is not there.
     """
@@ -160,16 +162,42 @@ def _of_sheets(file: Path) -> list[Source]:
     for name in sheets.keys() - plans.keys():
         with suppress(InputError):  # a page of words
             plans[name] = layout(sheets[name], str(file))
-    alike = [name for name in sheets if name in plans and plans[name].names == plans[largest].names]
-    notes = [f"{file.name}: a test from each of the worksheets {', '.join(alike)}"] * (len(alike) > 1)
+    signals = {name: _signals(name, plans[name], rows) for name, rows in sheets.items() if name in plans}
+    signals = {name: labels for name, labels in signals.items() if labels}
+    every = [label for labels in signals.values() for label in labels[1:]]
+    joint = len(signals) > 1 and largest in signals and len({*every}) == len(every)
+    alike = [*signals] if joint else [n for n in sheets if n in plans and plans[n].names == plans[largest].names]
+    what = "the signals of the worksheets {} are one test" if joint else "a test from each of the worksheets {}"
+    notes = [f"{file.name}: {what.format(', '.join(alike))}"] * (len(alike) > 1)
     notes += [f"{file.name}: worksheet '{name}' is left out" for name in sheets if name in plans.keys() - {*alike}]
-    out = []
-    for name in alike:
-        plan, rows = plans[name], sheets[name]
-        body = [row for row in rows[plan.first :] if any(c is not None and str(c).strip() for c in row)]
-        columns = [[row[j] if j < len(row) else None for row in body] for j in range(plan.width)]
-        out.append(source_of_table(file, plan, columns, [*notes, *_formulas(file)]))
-    return out
+    notes += _formulas(file)
+    tables = {name: _cells(plans[name], sheets[name]) for name in alike}
+    if not joint:
+        return [source_of_table(file, plans[name], columns, notes) for name, columns in tables.items()]
+    rows = max(len(columns[0]) for columns in tables.values())
+    beside = [[*cells, *[None] * (rows - len(cells))] for columns in tables.values() for cells in columns]
+    names = _once(_plain([label for labels in signals.values() for label in labels]))
+    return [replace(_source(file, names, beside, {}, notes), apart=True)]
+
+
+def _signals(sheet: str, plan: Layout, rows: Sequence[Sequence[Any]]) -> list[str]:
+    """Names of the columns of a worksheet, none where no clock is the first or it is a run by its name; a single signal
+    is called after its sheet, unless its header alone says what it is."""
+    names = [split_unit(name) for name in plan.names]
+    if RUNS & {*tokens(sheet)} or not (is_time(names[0][0]) or is_date(rows[plan.first][0])):
+        return []
+    if len(names) == 2 and not roles_of(name := names[1][0]):
+        known = unit_of(name) or quantities_of(name)
+        unit = names[1][1] or (name if unit_of(name) else "")
+        names[1] = (sheet if roles_of(sheet) or quantities_of(sheet) or not known else name, unit)
+    units = [text or unit for text, (_, unit) in zip(plan.units, names, strict=True)]
+    return [f"{name} [{unit}]" if unit else name for (name, _), unit in zip(names, units, strict=True)]
+
+
+def _cells(plan: Layout, rows: Sequence[Sequence[Any]]) -> list[list[Any]]:
+    """Columns of a worksheet."""
+    body = [row for row in rows[plan.first :] if any(c is not None and str(c).strip() for c in row)]
+    return [[row[j] if j < len(row) else None for row in body] for j in range(plan.width)]
 
 
 def source_of_recording(file: Path, table: DataTable) -> Source:

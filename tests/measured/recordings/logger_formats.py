@@ -54,7 +54,7 @@ class Format:
 
     stamp : row -> cell of the clock;  scale : letter -> (factor, offset) from the unit of memory into that of the file
     cells : letter -> row -> cell of a column that is no number;  doubt : words that must be said
-    without : letters that are left out though they have a meaning
+    without : letters that are left out though they have a meaning;  switches : columns that are on and off
     """
 
     columns: str
@@ -75,6 +75,7 @@ class Format:
     name: str = "a.csv"
     row: object = None
     digits: int = 2
+    switches: tuple[str, ...] = ()
 
     def header(self) -> list[str]:
         return self.names if self.names is not None else [NAMES[c] for c in self.columns]
@@ -650,6 +651,7 @@ FORMATS: dict[str, Format] = {
         "\t",
         units=["s", "A", "deg C", "deg C", "-", ""],
         cells={"z": lambda k: "TRUE" if k > 9 else "FALSE"},
+        switches=("xBrkOn",),
     ),
     "turns in danish": Format("tnWA", ["Tid", "Omdrejningstal (o/min)", "Vikling (°C)", "T_a (°C)"], ";", ","),
     "microseconds unsaid": Format(

@@ -9,12 +9,13 @@ import pytest
 
 from geom.description.roles import Role
 from geom.errors import InputError
+from lumped.model.quantities import INPUTS
 from measured.headers.cells import split_unit
 from measured.headers.words import roles_of
 from measured.importing.aligned import Recording, shift
 from measured.importing.case_files import read_runs
 from measured.importing.clock import clock_of
-from measured.importing.guess import guesses, in_memory
+from measured.importing.guess import AS_FLOW, AS_ROOM, ON_OFF, guesses, in_memory
 from measured.importing.source import read_source
 from thermoscope.commands.test.new import Wishes, first_model
 from thermoscope.commands.test.new import new_case as new
@@ -222,6 +223,46 @@ def test_the_frequency_of_the_supply_is_the_speed_where_none_was_recorded(tmp_pa
     guess, source = found["Freq [Hz]"]
     assert guess.feeds == feeds
     assert in_memory(source, guess).max() == pytest.approx(3000.0 if feeds == "speed_rpm" else most_Hz)
+
+
+@pytest.mark.parametrize("name", ["T_cabinet", "T_Schaltschrank"])
+def test_a_cabinet_is_the_room_where_no_other_is_and_all_parts_are_warmer(tmp_path, name):
+    found, _ = read(file(tmp_path, f"t [s],I [A],T_winding [°C],{name} [°C]", "t", "I", "W", "A"))
+    assert goes(found) == {"I [A]": "current_A", "T_winding [°C]": "winding", f"{name} [°C]": "ambient"}
+    assert AS_ROOM in found[f"{name} [°C]"][0].doubt
+    found, _ = read(file(tmp_path, f"t [s],I [A],T_winding [°C],{name} [°C],Room [°C]", "t", "I", "W", "A", "A"))
+    assert goes(found)["Room [°C]"] == "ambient"
+    assert f"{name} [°C]" not in goes(found)
+    found, _ = read(file(tmp_path, f"t [s],I [A],T_winding [°C],{name} [°C]", "t", "I", "H", "W"))
+    assert f"{name} [°C]" not in goes(found)  # it is warmer than the winding: of an inverter in there
+
+
+@pytest.mark.parametrize("words", [("1", "0"), ("on", "off"), ("TRUE", "FALSE")])
+def test_what_is_on_and_off_is_an_input_where_no_other_says_the_same(tmp_path, words):
+    brake = [words[k // 17 % 2] for k in range(N)]
+    names = "t [s],I [A],T_winding [°C],Room [°C],Brake,Main contactor"
+    found, _ = read(file(tmp_path, names, "t", "I", "W", "A", brake, [words[0 if on else 1] for on in ON]))
+    assert goes(found)["Brake"] == "brake_percent"
+    assert found["Brake"][0].doubt == ON_OFF
+    assert "Main contactor" not in goes(found)  # it is where the current is
+
+
+def test_the_speed_of_a_fan_is_a_flow_and_none_of_the_machine(tmp_path):
+    fan = np.where(np.arange(N) > 80, 1200.0, 600.0)
+    source = file(tmp_path, "t [s],I [A],T_winding [°C],Room [°C],fan_rpm", "t", "I", "W", "A", fan)
+    found, _ = read(source)
+    g, read_source = found["fan_rpm"]
+    assert (g.quantity, g.feeds, g.doubt) == ("flow_share", "flow_percent", AS_FLOW)
+    assert in_memory(read_source, g) == pytest.approx(fan)
+    for place, quantity in (("fan_rpm", "speed"), ("speed", "speed"), ("flow_share", "flow_share")):
+        out = tmp_path / place
+        assert new([source], Wishes(out=out, yes=True, places={"fan_rpm": place}), str(tmp_path / "new.json")) == 0
+        (column,) = (
+            c
+            for c in json.loads((tmp_path / "new.json").read_text())["tests"][0]["columns"]
+            if c["column"] == "fan_rpm"
+        )
+        assert (column["feeds"], column["quantity"]) == (INPUTS.get(place, place), quantity)
 
 
 def test_a_place_by_hand_is_not_doubted(tmp_path):
