@@ -25,6 +25,7 @@ from measured.headers.words import (
     MEAN,
     MODELLED,
     NOTHING,
+    OUTER,
     PATH,
     PUMP,
     QUANTITY,
@@ -35,12 +36,12 @@ from measured.headers.words import (
     SPREAD,
     SUPPLY,
     axis_of,
-    is_outer,
     is_rise,
     is_setpoint,
     is_spoken,
     is_stage,
     is_stator,
+    is_within,
     quantities_of,
     roles_of,
     tokens,
@@ -187,7 +188,8 @@ def _without_functions(source: Source, every: list[Guess]) -> list[Guess]:
     hot = {g.column: g for g in every if g.quantity == "temperature" and not is_setpoint(source.labels[g.column])}
     roles = {c: roles_of(source.labels[c])[:1] for c in hot}
     order = sorted(hot, key=lambda c: (not roles[c], bool({*tokens(c)} & (EXTREME | MEAN))))
-    others = {g.column: source.numbers(g.column) for g in every if g.column not in hot and _is_plain(source, g)}
+    rest = [g for g in every if g.column not in hot and source.is_numeric(g.column) and g.why != SUREST]
+    others = {g.column: source.numbers(g.column) for g in rest if g.used or g.doubt in ("", UNTOLD)}
     free = {*others} | {c for c in order if not source.units[c]}
     functions = functional_relations({c: in_memory(source, hot[c]) for c in order}, others, free)
     out = []
@@ -263,11 +265,6 @@ def _with_switches(source: Source, every: list[Guess]) -> list[Guess]:
     return every
 
 
-def _is_plain(source: Source, g: Guess) -> bool:
-    """May its numbers be those of other columns, whatever it is called?"""
-    return source.is_numeric(g.column) and g.why != SUREST and (g.used or g.doubt in ("", UNTOLD))
-
-
 def _of_one(source: Source, every: list[Guess]) -> list[Guess]:
     """Of the first machine, and a doubt, where speeds differ by a number alone."""
     stems = {g.column: (g.quantity, *filter(str.isalpha, tokens(source.labels[g.column]))) for g in every if g.feeds}
@@ -325,11 +322,6 @@ def _read(source: Source, every: list[Guess], target: Target) -> list[Guess]:
     return every
 
 
-def is_flow_stage(label: str) -> bool:
-    """Does it name the stage of a fan, a pump or a cooler?"""
-    return is_stage(label) and (is_of_flow(label) or Role.COOLANT in roles_of(label))
-
-
 def is_of_flow(label: str) -> bool:
     """Does it name a flow of air or liquid, or what makes it flow?"""
     return bool({AIR, LIQUID} & {*quantities_of(label)}) or is_spoken(label, PUMP)
@@ -354,8 +346,8 @@ def guess(source: Source, column: str, target: Target) -> Guess:
     if not worded and values[0] in (0, 1) and bool((np.diff(values) == 1).all()):  # "Frame" of a camera
         return Guess(column, "", doubt="counts the rows")
     whole = {*values[np.isfinite(values)].tolist()} <= {*range(STATES)}
-    states = 2 if quantity in (AIR, LIQUID) else STATES if is_flow_stage(label) else 0
-    if not worded and states and {*values[np.isfinite(values)].tolist()} <= {*range(states)}:
+    flows = is_of_flow(label) or Role.COOLANT in roles_of(label)  # what a fan, a pump or a cooler does
+    if flows and not worded and whole and (is_stage(label) or np.nanmax(values) <= 1):
         return _fed(Guess(column, "flow_share", "1", why="name", doubt=STAGES), label, target)
     if quantity == "temperature" and not worded and whole:
         return Guess(column, "", doubt="a state, by its values")
@@ -428,6 +420,8 @@ def _left_out(source: Source, column: str) -> str:
         return "the quality of a reading"
     if words & SPARE:
         return "a spare channel, by its name"
+    if words == {"bearing"} and any("longitude" in tokens(other) for other in source.labels.values()):
+        return "a heading, beside a longitude"
     if words & SPREAD:
         return "a spread of readings, not a reading"
     if words & NOTHING and unit in WEAK:
@@ -501,7 +495,7 @@ def _quantity(label: str, unit: str, target: Target) -> tuple[str, str, str]:
     if (feeds := target.input_of(label, "")) and (quantity := target.inputs[feeds]) in (by_name or [quantity]):
         return quantity, f"name like the input {feeds}", ""
     if roles_of(label) and by_name in ([], ["temperature"], ["vehicle_speed"]):
-        weak = not any(w in terms for w in tokens(label) for terms in ROLES.values())
+        weak = not any(is_spoken(label, terms) for terms in ROLES.values())
         return "temperature", "name of a part", BY_LETTERS if weak else ""
     if by_name and not (by_name == ["temperature"] and ANGLE.search(label)):
         worded = any(w in terms for w in tokens(label) for terms in QUANTITY.values() if len(w) > 1)
@@ -595,7 +589,7 @@ def single(guesses: list[Guess], target: Target, labels: Mapping[str, str]) -> l
         mixed = g.place == "ambient" and len(roles_of(g.column)) > 1  # the air of a frame
         later = {"current": bool(words & (SUPPLY | MEAN)), "power": not words & LOSS}.get(g.quantity, mixed)
         other = bool(g.place) and g.place not in words
-        outdoors = bool(g.place) and is_outer(g.column)  # a machine has its room around it
+        outdoors = bool(g.place and (is_within(g.column, OUTER) or is_spoken(g.column, INSTRUMENT)))  # no room of it
         more = len(words) * bool(g.place)  # "T room" is the room before "T chamber wall" is
         plain = not g.feeds or input_name(g) == g.feeds  # "Speed" is the speed before "S-1 [1/s]" is
         return is_setpoint(g.column), later, not READ & words, inlet, outdoors, other, g.why != SUREST, not plain, more
@@ -610,18 +604,13 @@ def single(guesses: list[Guess], target: Target, labels: Mapping[str, str]) -> l
             owner[key] = g.column
             if g.feeds and is_setpoint(g.column):
                 out[g.column] = replace(g, doubt="; ".join(filter(None, (g.doubt, DEMAND))))
-        elif (
-            g.feeds and (g.feeds not in target.inputs or _of_part(g, labels[owner[key]])) and not is_setpoint(g.column)
-        ):
+            continue
+        of_part = g.quantity == "power" and (roles_of(g.column) or LOSS & {*tokens(labels[owner[key]])})
+        if g.feeds and (g.feeds not in target.inputs or of_part) and not is_setpoint(g.column):  # of copper or iron
             out[g.column] = replace(g, feeds=input_name(g))
         else:
             out[g.column] = g.without(f"{owner[key]} gives {key} already")
     return [out[g.column] for g in guesses]
-
-
-def _of_part(g: Guess, owner: str) -> bool:
-    """Is it a power of one part, as of copper or iron, beside which others have theirs; or one beside a loss?"""
-    return g.quantity == "power" and bool(roles_of(g.column) or LOSS & {*tokens(owner)})
 
 
 def assigned(guesses: Sequence[Guess], source: Source, column: str, to: str, target: Target) -> list[Guess]:
@@ -648,14 +637,11 @@ def _moved(g: Guess, source: Source, to: str, target: Target) -> Guess:
         return g.without(MANUAL)
     if not source.is_numeric(g.column):
         raise InputError("holds words, not numbers", g.column, "a column of readings")
-    if to in target.places or to in target.boundaries:
-        quantity = "temperature"
-    elif to in target.inputs:
-        quantity = target.inputs[to] or g.quantity
-    elif own := USUAL.get(to) or measure_of(to):
-        quantity = own
-    else:
+    is_place = to in target.places or to in target.boundaries
+    quantity = "temperature" if is_place else target.inputs.get(to) or USUAL.get(to) or measure_of(to)
+    if not quantity and to not in target.inputs:
         raise InputError(f"the model has no '{to}'", g.column, ", ".join([*target.places, *target.inputs][:8]))
+    quantity = quantity or g.quantity
     if g.quantity and quantity != g.quantity and g.doubt not in (ON_OFF, AS_FLOW):
         raise InputError(f"is a {g.quantity}, '{to}' wants a {quantity}".replace("_", " "), g.column, "another column")
     units = [unit for unit in (g.unit, unit_of(source.units[g.column])) if unit in QUANTITIES[quantity].units]

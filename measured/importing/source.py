@@ -42,6 +42,8 @@ TENFOLD = re.compile(r"(.*[^\W_])[ _]\(?[x×*](10+)\)?")  # T_wdg_x10: a registe
 LEAST_PATHS = 3  # with groups in common
 BOOKS = (".xlsx", ".xlsm")
 HOURS = re.compile(r"(?:[01]?\d|2[0-4])\s*[hH]\s*[0-5]\d")  # 10h05, by hand in French
+HALVES = re.compile(r"(?:(오전|上午|午前)|오후|下午|午後)\s*(\d[\d:.]*)")  # of a day, before the hour
+YEAR = re.compile(r"^\s*['’](?=\d\d[-/.]\d\d[-/.]\d\d\b)")
 POINTED = re.compile(r"(?:[01]?\d|2[0-3])\.[0-5]\d\.[0-5]\d")
 TAG = re.compile(r"\s*<[^<>]*>|\\[^\\]*:\d+$")  # of a channel, no part of its name: 101 Winding <TC K>, tStator\ETKC:1
 UNCALCULATED = re.compile(rb"</f>\s*(?:<v\s*/>|<v></v>)?\s*</c>")
@@ -174,8 +176,7 @@ def _of_sheets(file: Path) -> list[Source]:
     tables = {name: _cells(plans[name], sheets[name]) for name in alike}
     if not joint:
         return [source_of_table(file, plans[name], columns, notes) for name, columns in tables.items()]
-    rows = max(len(columns[0]) for columns in tables.values())
-    beside = [[*cells, *[None] * (rows - len(cells))] for columns in tables.values() for cells in columns]
+    beside = [*zip(*itertools.zip_longest(*itertools.chain(*tables.values())), strict=True)]
     names = _once(_plain([label for labels in signals.values() for label in labels]))
     return [replace(_source(file, names, beside, {}, notes), apart=True)]
 
@@ -183,13 +184,13 @@ def _of_sheets(file: Path) -> list[Source]:
 def _signals(sheet: str, plan: Layout, rows: Sequence[Sequence[Any]]) -> list[str]:
     """Names of the columns of a worksheet, none where no clock is the first or it is a run by its name; a single signal
     is called after its sheet, unless its header alone says what it is."""
-    names = [split_unit(name) for name in plan.names]
-    if RUNS & {*tokens(sheet)} or not (is_time(names[0][0]) or is_date(rows[plan.first][0])):
+    names, (at, *row) = [split_unit(name) for name in plan.names], rows[plan.first]
+    numeric = any(number(cell) == number(cell) for cell in row)
+    if RUNS & {*tokens(sheet)} or not numeric or not (is_time(names[0][0]) or is_date(at)):
         return []
     if len(names) == 2 and not roles_of(name := names[1][0]):
-        known = unit_of(name) or quantities_of(name)
-        unit = names[1][1] or (name if unit_of(name) else "")
-        names[1] = (sheet if roles_of(sheet) or quantities_of(sheet) or not known else name, unit)
+        by_sheet = roles_of(sheet) or quantities_of(sheet) or not (unit_of(name) or quantities_of(name))
+        names[1] = (sheet if by_sheet else name, names[1][1] or unit_of(name))
     units = [text or unit for text, (_, unit) in zip(plan.units, names, strict=True)]
     return [f"{name} [{unit}]" if unit else name for (name, _), unit in zip(names, units, strict=True)]
 
@@ -303,10 +304,12 @@ def _without_groups(labels: Mapping[str, str]) -> dict[str, str]:
 
 
 def _with_colons(cells: Sequence[Any]) -> Sequence[Any]:
-    """Times of day that are written as 10h05, or as dates are, 09.14.05: a year that changes from row to row is a
-    second."""
+    """Times of day that are written as 10h05, 오후 1:05, or as dates are, 09.14.05: a year that changes from row to row
+    is a second. Years of two digits behind an apostrophe are whole."""
     if isinstance(cells, np.ndarray) or not all(isinstance(c, str) for c in cells):
         return cells
+    if all(HALVES.search(c) or YEAR.search(c) for c in cells[:9]):
+        return [YEAR.sub("20", HALVES.sub(lambda m: f"{m[2]} {'AM' if m[1] else 'PM'}", c)) for c in cells]
     if all(HOURS.fullmatch(c.strip()) for c in cells):
         return [re.sub(r"\s*[hH]\s*", ":", c.strip()) for c in cells]
     if not all(POINTED.fullmatch(c.strip()) for c in cells[:9]):

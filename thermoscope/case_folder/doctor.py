@@ -52,7 +52,7 @@ def _reversed(p: Patient, network: Network) -> Iterator[Finding]:
     columns = {c.name: p.samples.values[c.name] for c in _within(p, network)}
     edges = [np.nanmin(p.samples.values[c.name]) for c in p.sheet.columns if c.place in network.boundaries]
     least = min([*edges, *p.sheet.boundaries.values()], default=np.inf) - WARM_K
-    least_of = {c.name: -np.inf if is_spoken(f"{c.header} {c.place}", COLD) else least for c in _within(p, network)}
+    cold = {c.name for c in _within(p, network) if is_spoken(f"{c.header} {c.place}", COLD)}
     moves = {
         n: float(v[finite[-1]] - v[finite[0]])
         for n, v in columns.items()
@@ -60,7 +60,8 @@ def _reversed(p: Patient, network: Network) -> Iterator[Finding]:
     }
     for name, move in moves.items():
         rise = float(np.median([m for n, m in moves.items() if n != name] or [0.0]))
-        if rise > WARM_K and move < -max(WARM_K, SWAPPED * rise) and np.nanmin(columns[name]) < least_of[name]:
+        below = name not in cold and np.nanmin(columns[name]) < least
+        if below and rise > WARM_K and move < -max(WARM_K, SWAPPED * rise):
             yield p.finding(
                 name,
                 f"falls by {-move:.0f} K while the others rise: are its wires swapped, or is it cooled below the room?",

@@ -265,6 +265,28 @@ def test_the_speed_of_a_fan_is_a_flow_and_none_of_the_machine(tmp_path):
         assert (column["feeds"], column["quantity"]) == (INPUTS.get(place, place), quantity)
 
 
+def test_a_cooler_that_is_on_and_off_in_signs_without_blanks(tmp_path):
+    on = [str(k // 23 % 2) for k in range(N)]
+    found, _ = read(file(tmp_path, "时间(s),电流(A),电机绕组温度,环境温度,冷却风机", "t", "I", "W", "A", on))
+    assert found["冷却风机"][0].quantity == "flow_share"
+    assert [g.doubt for g, _ in found.values() if g.place] == ["", ""]
+
+
+def test_a_heading_beside_a_longitude_is_no_bearing(tmp_path):
+    heading, east = (7.0 * np.arange(N)) % 360, 11.5 + 1e-4 * np.arange(N)
+    names = "t [s],Longitude,Bearing,T_winding [°C],T_amb [°C],I [A]"
+    found, _ = read(file(tmp_path, names, "t", east, heading, "W", "A", "I"))
+    assert goes(found) == {"T_winding [°C]": "winding", "T_amb [°C]": "ambient", "I [A]": "current_A"}
+    found, _ = read(file(tmp_path, names.replace("Longitude", "Bearing 2"), "t", "H", "H", "W", "A", "I"))
+    assert goes(found)["Bearing"] == "bearing"
+
+
+def test_the_room_of_the_machine_goes_before_that_of_a_converter(tmp_path):
+    names = "t [s],T_stator [°C],Ambient temp (converter) [°C],Nacelle ambient temp [°C],I [A]"
+    found, _ = read(file(tmp_path, names, "t", "W", "H", "A", "I"))
+    assert [c for c, place in goes(found).items() if place == "ambient"] == ["Nacelle ambient temp [°C]"]
+
+
 def test_a_place_by_hand_is_not_doubted(tmp_path):
     source = file(tmp_path, "t [s],winding [°C],Xyz 7 [°C],room [°C],I [A]", "t", "W", "H", "A", "I")
     wishes = Wishes(out=tmp_path / "made", yes=True, places={"Xyz 7 [°C]": "pulley"})
@@ -388,6 +410,8 @@ def test_a_labview_file_has_its_units_in_its_second_head_and_no_groups(tmp_path)
         ("oil inlet", Role.COOLANT),
         ("Bain d'huile", None),
         ("T escobillas", Role.COMMUTATOR),
+        ("Olie boven", None),  # no oven
+        ("teplota okolia", Role.AMBIENT),
     ],
 )
 def test_names_of_parts_in_the_words_of_other_shops(name, role):
