@@ -128,7 +128,7 @@ def on_one_clock(source: Source) -> Source:
         return source
     step = max(float(b[1] - b[0]) for b in begins)
     one = all(np.allclose(s, seconds[0], rtol=0.0, atol=0.5 * step, equal_nan=True) for s in seconds)
-    if one or (not source.apart and any(abs(b[0] - begins[0][0]) > 2 * step for b in begins)):
+    if one or (not source.clock_of_each and any(abs(b[0] - begins[0][0]) > 2 * step for b in begins)):
         return source
     end = min(float(np.nanmax(s)) for s in seconds)
     if end <= max(b[0] for b in begins):

@@ -301,8 +301,8 @@ def _read(source: Source, every: list[Guess], target: Target) -> list[Guess]:
         if not (roles_of(label) or is_spoken(label, MACHINE))
     }
     rest = [g for g in every if g.column in parts and g.quantity and g.column not in instruments]
-    means = {g.column: np.nanmean(in_memory(source, g)) for g in every if g.column in parts and g.quantity}
-    coldest = min(means, key=lambda c: means[c], default="")
+    mean_of = {g.column: np.nanmean(in_memory(source, g)) for g in every if g.column in parts and g.quantity}
+    coldest = min(mean_of, key=lambda c: mean_of[c], default="")
     edges = [b for b, role in target.boundaries.items() if role is Role.AMBIENT] if target.places else ["ambient"]
     has_room = any(Role.AMBIENT in roles_of(label)[:1] for label in hot.values())
     if rest and coldest in instruments and is_spoken(hot[coldest], CABINET) and edges and not has_room:

@@ -55,14 +55,14 @@ class Source(DataTable):
 
     labels : column -> its name without the unit;  units : also those that stand in the names
     unnamed : the file has no header;  period_s : between rows, by its preamble
-    apart : rows of different signals have nothing in common, for each signal stands behind its clock
+    clock_of_each : rows of different signals have nothing in common, for each stands behind its own clock
     """
 
     file: Path = Path()
     labels: Mapping[str, str] = field(default_factory=dict)
     unnamed: bool = False
     period_s: float | None = None
-    apart: bool = False
+    clock_of_each: bool = False
     values: dict[str, Array] = field(default_factory=dict, compare=False, repr=False)
 
     def numbers(self, column: str) -> Array:
@@ -178,7 +178,7 @@ def _of_sheets(file: Path) -> list[Source]:
         return [source_of_table(file, plans[name], columns, notes) for name, columns in tables.items()]
     beside = [*zip(*itertools.zip_longest(*itertools.chain(*tables.values())), strict=True)]
     names = _once(_plain([label for labels in signals.values() for label in labels]))
-    return [replace(_source(file, names, beside, {}, notes), apart=True)]
+    return [replace(_source(file, names, beside, {}, notes), clock_of_each=True)]
 
 
 def _signals(sheet: str, plan: Layout, rows: Sequence[Sequence[Any]]) -> list[str]:
