@@ -9,9 +9,9 @@ from pathlib import Path
 
 from geom.description.roles import ROLE_WORDS, SHORTEST, Role, words_of
 
-WORD = re.compile(r"[A-ZÀ-ÖØ-Þ]?[a-zß-öø-ſ]+|[A-ZÀ-ÖØ-Þ]+(?![a-zß-öø-ÿ])|\d+|[^\W\d_A-Za-zªµºÀ-ſ]+")
+WORD = re.compile(r"[A-ZÀ-ÖØ-Þ]?[a-zß-öø-ſ]+|[A-ZÀ-ÖØ-Þ]+(?![a-zß-öø-ÿ])|\d+|(?:[^\W\d_A-Za-zªµºÀ-ſ]|[\u0e30-\u0e4e])+")
 
-IDEOGRAPHS = "\u3040"  # from here on a sign is a word
+IDEOGRAPHS = "\u0e00"  # from here on a sign is a word, or words stand without blanks between them
 
 VOCABULARY = tomllib.loads(Path(__file__).with_name("vocabulary.toml").read_text("utf-8"))
 QUANTITY: Mapping[str, frozenset[str]] = {name: words_of(text) for name, text in VOCABULARY["quantities"].items()}
@@ -21,7 +21,8 @@ SETPOINT, READ, MODELLED, INLET, NOTHING = (WORDS[n] for n in ("setpoint", "read
 DIFFERENCE, CLOCKS, LOSS, OUTER, CHANNELS = (WORDS[n] for n in ("difference", "clock", "loss", "outer", "channels"))
 EXTREME, SPREAD, MEAN, INSTRUMENT, MACHINE = (WORDS[n] for n in ("extreme", "spread", "mean", "instrument", "machine"))
 SPARE, RUNS, SUPPLY, GOES_IN, COMES_OUT = (WORDS[n] for n in ("spare", "runs", "supply", "goes_in", "comes_out"))
-STAGE, PUMP, EXHAUST = WORDS["stage"], WORDS["pump"], WORDS["exhaust"]
+STAGE, PUMP, EXHAUST, CABINET, COLD = (WORDS[n] for n in ("stage", "pump", "exhaust", "cabinet", "cold"))
+INSTRUMENT |= CABINET
 PHRASES = {
     re.compile(rf"(?:(?<![^\W\d_])|(?<=[a-z])(?=[A-Z]))(?i:{phrase.replace(' ', '[ _-]?')})(?![a-zß-ÿ])"): word
     for word, phrases in VOCABULARY["phrases"].items()
@@ -118,9 +119,9 @@ def roles_of(name: str) -> list[Role]:
     return sorted(hits, key=lambda role: hits[role])
 
 
-def is_outer(name: str) -> bool:
-    """Is it of the air outside?"""
-    return any(w in OUTER or _inside(w, OUTER) for w in tokens(name))
+def is_within(name: str, terms: frozenset[str]) -> bool:
+    """Does one of some words stand in a name, a long one also inside others?"""
+    return any(w in terms or _inside(w, terms) for w in tokens(name))
 
 
 def is_stator(name: str) -> bool:
@@ -160,7 +161,8 @@ def _end(word: str, words: frozenset[str]) -> int:
 
 
 def _inside(word: str, words: frozenset[str]) -> bool:
-    return any((len(k) >= SHORTEST or k[0] >= IDEOGRAPHS) and k in word for k in words)
+    inside = {k for k in words if (len(k) >= SHORTEST or k[0] >= IDEOGRAPHS) and k in word}
+    return any(k[0] >= IDEOGRAPHS or word.find(k) != 1 or word[0] == "t" for k in inside)  # "boven" is no oven
 
 
 def is_time(label: str) -> bool:

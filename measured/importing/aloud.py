@@ -37,12 +37,11 @@ from measured.importing.guess import (
     is_whole,
     of_edge,
 )
-from measured.importing.relations import COARSE, NOISE_K, misfit
+from measured.importing.relations import COARSE, NOISE_K, misfit, names_of
 from measured.importing.source import Source
 from measured.importing.starter import HEATS, MAIN, POWERS, STILL, rise
 
 Columns = Sequence[tuple[Recording, Guess]]
-NAMES = 8  # of columns, before the rest is counted
 LEAST_K = 1.0  # that a part has to warm by before what heats it can be told
 BETTER = 0.5  # of the misfit: another column explains the readings better
 EXPLAINS = 0.3  # of the rise: what is left beside a column that heats
@@ -138,7 +137,8 @@ def _winding(columns: Columns, left: Columns) -> dict[str, str]:
 def _heat(draft: Draft, columns: Columns, left: Columns) -> dict[str, str]:
     """What heats is lacking, is a torque or a voltage alone, or explains the readings less well than another column."""
     heats = [(r, g) for r, g in columns if g.feeds and g.quantity in FEEDS]
-    others = [(r, g) for r, g in left if g.quantity in SOON and r.source.is_numeric(g.column) and _may_heat(g)]
+    others = [(r, g) for r, g in left if g.quantity in SOON and r.source.is_numeric(g.column)]
+    others = [(r, g) for r, g in others if g.quantity or g.doubt == UNTOLD or OF_SENSOR in g.doubt]  # it may heat
     main = [(r, g) for r, g in heats if g.feeds in MAIN.values()] or heats
     best, error = _best(draft, columns, [*others, *(one for one in heats if one not in main)])
     if draft.constants:
@@ -157,11 +157,6 @@ def _heat(draft: Draft, columns: Columns, left: Columns) -> dict[str, str]:
         to = "share" if any(r.source.is_switch(g.column) for r, g in left if g.column == best) else "QUANTITY"
         return {"heat": f"'{best}' explains the readings better than '{column}'; --place {quote(f'{best}={to}')}"}
     return {}
-
-
-def _may_heat(g: Guess) -> bool:
-    """Was it left out for a reason that leaves it open whether it heats?"""
-    return bool(g.quantity) or g.doubt == UNTOLD or OF_SENSOR in g.doubt
 
 
 def _best(draft: Draft, columns: Columns, of: Columns) -> tuple[str, float]:
@@ -218,10 +213,8 @@ def _lost(left: Columns) -> dict[str, str]:
         ):
             out.setdefault(g.doubt, []).append(g.column)
     checks = [doubt for doubt in out if doubt.endswith("gives coolant already")]
-    lost = {
-        d: f"{_names(of)} {'is' if len(of) == 1 else 'are'} left out: {d}" for d, of in out.items() if d not in checks
-    }
-    return lost | {d: f"{_names(out[d])} {STAY[len(out[d]) > 1]}" for d in checks}
+    lost = {d: f"{names_of(of)} {('is', 'are')[len(of) > 1]} left out: {d}" for d, of in out.items() if d not in checks}
+    return lost | {d: f"{names_of(out[d])} {STAY[len(out[d]) > 1]}" for d in checks}
 
 
 def _doubted(columns: Columns) -> dict[str, str]:
@@ -242,11 +235,5 @@ def _doubted(columns: Columns) -> dict[str, str]:
         doubt: f"; --place {quote(f'{of[0]}=PLACE')}" if any(words in doubt for words in PLACES) else ""
         for doubt, of in out.items()
     }
-    words = {d: f"{_names(of)}: {d}{where[d]}" for d, of in out.items() if d not in units_of}
+    words = {d: f"{names_of(of)}: {d}{where[d]}" for d, of in out.items() if d not in units_of}
     return {**words, NO_UNIT: f"{NO_UNIT}: {', '.join(units)}"} if units else words
-
-
-def _names(columns: Sequence[str]) -> str:
-    """ "'a', 'b' and 3 more"."""
-    more = f" and {len(columns) - NAMES} more" if len(columns) > NAMES else ""
-    return ", ".join(f"'{c}'" for c in columns[:NAMES]) + more

@@ -113,7 +113,8 @@ def on_one_clock(source: Source) -> Source:
     """With every reading at its own instant where each signal stands behind a clock of its own, and a note; to the end
     of the one that ends first.
 
-    As it is where the clocks are one, or begin apart: those are two clocks of one row.
+    As it is where the clocks are one, or begin apart: those are two clocks of one row.  InputError where signals that
+    share no rows share no time either.
     """
     names = list(source.cells)
     at = [i for i, name in enumerate(names) if is_second_clock(source, name)]
@@ -127,9 +128,11 @@ def on_one_clock(source: Source) -> Source:
         return source
     step = max(float(b[1] - b[0]) for b in begins)
     one = all(np.allclose(s, seconds[0], rtol=0.0, atol=0.5 * step, equal_nan=True) for s in seconds)
-    if one or any(abs(b[0] - begins[0][0]) > 2 * step for b in begins):
+    if one or (not source.clock_of_each and any(abs(b[0] - begins[0][0]) > 2 * step for b in begins)):
         return source
     end = min(float(np.nanmax(s)) for s in seconds)
+    if end <= max(b[0] for b in begins):
+        raise InputError("its signals never run at one time", str(source.file), "a workbook of one test")
     signals = [
         (name, t[(good := t <= end)], source.numbers(name)[good])
         for group, t in zip(groups, seconds, strict=True)
@@ -577,6 +580,15 @@ def _since_1970(source: Source, column: str) -> bool:
     return any(size <= first < 2 * size for size in UNIX)
 
 
+def _in_digits(values: Array) -> Array | None:
+    """Seconds of a day of whole numbers such as 113110, where that is a more even clock than the numbers themselves."""
+    hours, minutes, seconds = values // 10000, values // 100 % 100, values % 100
+    if not (np.isfinite(values).all() and (values % 1 == 0).all() and max(*minutes, *seconds) < 60 and max(hours) < 24):
+        return None
+    of_day = np.unwrap(HOUR_S * hours + 60 * minutes + seconds, period=DAY_S)
+    return of_day if np.ptp(np.diff(of_day)) < np.ptp(np.diff(values)) and np.diff(of_day).min() > 0 else None
+
+
 def _scaled(source: Source, column: str) -> Clock:
     """Seconds by the unit of the file; without one by size and step: what is likely is taken and doubted aloud."""
     values, unit = source.numbers(column), _unit_of_time(source, column)
@@ -592,6 +604,8 @@ def _scaled(source: Source, column: str) -> Clock:
         if low < first < high and (factor < 1 or step < 0.5):
             doubt = "" if factor == DAY_S else f"'{column}' is taken as {words}"
             return Clock((values - first) * factor, None, (column,), words, doubt)
+    if (digits := _in_digits(values)) is not None:
+        return Clock(digits, None, (column,), "hours, minutes and seconds in one number")
     of_day = step * DAY_S
     if 0 <= first < 1 and 0.05 < of_day < SHORT_STEP_S * DAY_S and abs(of_day - round(of_day, 1)) < 0.02 * of_day:
         return Clock(values * DAY_S, None, (column,), "parts of a day", f"'{column}' is taken as parts of a day")

@@ -15,6 +15,7 @@ from lumped.model.quantities import AIR, INPUTS, LIQUID, USUAL
 from lumped.schemas.bounds import COLDEST, HOTTEST
 from measured.headers.cells import is_unit, unit_of
 from measured.headers.words import (
+    CABINET,
     EXTREME,
     INLET,
     INSTRUMENT,
@@ -24,6 +25,7 @@ from measured.headers.words import (
     MEAN,
     MODELLED,
     NOTHING,
+    OUTER,
     PATH,
     PUMP,
     QUANTITY,
@@ -34,12 +36,12 @@ from measured.headers.words import (
     SPREAD,
     SUPPLY,
     axis_of,
-    is_outer,
     is_rise,
     is_setpoint,
     is_spoken,
     is_stage,
     is_stator,
+    is_within,
     quantities_of,
     roles_of,
     tokens,
@@ -47,7 +49,7 @@ from measured.headers.words import (
 from measured.importing.clock import is_second_clock
 from measured.importing.relations import SAME, START_K, functional_relations, is_like_temperature, is_product, quickness
 from measured.importing.source import Source
-from measured.importing.target import Target
+from measured.importing.target import Target, measure_of
 from measured.recordings.invalid_readings import FAR, LARGEST_THERMOCOUPLE, coded
 from measured.recordings.units import LARGEST, QUANTITIES, ROOM_F, ROOM_K, SWITCHED, converted
 
@@ -102,6 +104,9 @@ FUNCTION = "made of other columns"
 OF_SENSOR = "of a sensor"
 AS_WINDING = "taken as the winding"
 FASTEST, OF_STATOR = (f"{why}: {AS_WINDING}" for why in ("follows the heat fastest", "of the stator"))
+AS_ROOM = "taken as the room, as no other column is: is the machine in there?"
+AS_FLOW = "the speed of a fan: taken as a flow, of which only the changes count"
+ON_OFF = "on and off, by its values alone: heat, cooling, or neither?"
 AS_SPEED = "no speed was recorded: the frequency of the supply, as of one pole pair"
 LARGEST_HZ = 1000.0  # of a supply; inverters for motors switch faster
 QUICK = 0.6  # of the fastest: windings of the same machine
@@ -146,14 +151,14 @@ class Guess:
 def guesses(source: Source, clock: Sequence[str], target: Target) -> list[Guess]:
     """One per column that is no clock."""
     every = _by_readings(source, [guess(source, c, target) for c in source.cells if c not in clock], target)
-    every = _cold_start_outliers(source, _read(source, _without_functions(source, every)))
+    every = _cold_start_outliers(source, _read(source, _without_functions(source, every), target))
     kelvin = sum(g.unit == "K" for g in every if g.quantity == "temperature")
     axes = {axis for g in every if g.quantity == "current" and (axis := axis_of(source.labels[g.column]))}
     both = {axis for pair in AXES if pair <= axes for axis in pair} - {axis_of(name) for name in target.inputs}
     for i, g in enumerate(every):  # a component has an input of its own: the current is the root sum square of both
         if g.feeds and (axis := axis_of(source.labels[g.column])) in both:
             every[i] = replace(g, feeds=f"{axis}_A")
-    every = _products(source, _with_speed(source, every, target), target)
+    every = _with_switches(source, _products(source, _with_speed(source, every, target), target))
     every = _quickest(source, every, target)
     return _of_one(source, single(every if kelvin else _in_fahrenheit(source, every), target, source.labels))
 
@@ -183,7 +188,8 @@ def _without_functions(source: Source, every: list[Guess]) -> list[Guess]:
     hot = {g.column: g for g in every if g.quantity == "temperature" and not is_setpoint(source.labels[g.column])}
     roles = {c: roles_of(source.labels[c])[:1] for c in hot}
     order = sorted(hot, key=lambda c: (not roles[c], bool({*tokens(c)} & (EXTREME | MEAN))))
-    others = {g.column: source.numbers(g.column) for g in every if g.column not in hot and _is_plain(source, g)}
+    rest = [g for g in every if g.column not in hot and source.is_numeric(g.column) and g.why != SUREST]
+    others = {g.column: source.numbers(g.column) for g in rest if g.used or g.doubt in ("", UNTOLD)}
     free = {*others} | {c for c in order if not source.units[c]}
     functions = functional_relations({c: in_memory(source, hot[c]) for c in order}, others, free)
     out = []
@@ -247,9 +253,16 @@ def _with_speed(source: Source, every: list[Guess], target: Target) -> list[Gues
     return every
 
 
-def _is_plain(source: Source, g: Guess) -> bool:
-    """May its numbers be those of other columns, whatever it is called?"""
-    return source.is_numeric(g.column) and g.why != SUREST and (g.used or g.doubt in ("", UNTOLD))
+def _with_switches(source: Source, every: list[Guess]) -> list[Guess]:
+    """With what is on and off under no known name as an input, unless another input parts the two as well."""
+    for i, g in enumerate(every):
+        if g.doubt == UNTOLD and {*(on := source.numbers(g.column))[np.isfinite(on)]} == {0.0, 1.0}:
+            inputs = [source.numbers(other.column) for other in every if other.feeds]
+            pairs = [(x[on == state], x[on == 1 - state]) for x in inputs for state in (0, 1)]
+            if not any(np.fmax.reduce(a, initial=-np.inf) < np.fmin.reduce(b, initial=np.inf) for a, b in pairs):
+                switch = replace(g, quantity="share", unit="1", why="values", doubt=ON_OFF)
+                every[i] = replace(switch, feeds=input_name(switch))
+    return every
 
 
 def _of_one(source: Source, every: list[Guess]) -> list[Guess]:
@@ -262,8 +275,9 @@ def _of_one(source: Source, every: list[Guess]) -> list[Guess]:
     return [replace(g, doubt=SEVERAL) if g.quantity == "speed" and g.feeds else g for g in every]
 
 
-def _read(source: Source, every: list[Guess]) -> list[Guess]:
-    """Without the temperatures that a model made, that never change, and extremes, where others were read."""
+def _read(source: Source, every: list[Guess], target: Target) -> list[Guess]:
+    """Without the temperatures that a model made, that never change, and extremes, where others were read; the air
+    of a cabinet is the room where no other column is and all parts are warmer."""
     words = {g.column: {*tokens(source.labels[g.column])} for g in every if g.used}
     means = [words[c] - MEAN for c in words if not words[c] & EXTREME]
     every = [
@@ -287,6 +301,13 @@ def _read(source: Source, every: list[Guess]) -> list[Guess]:
         if not (roles_of(label) or is_spoken(label, MACHINE))
     }
     rest = [g for g in every if g.column in parts and g.quantity and g.column not in instruments]
+    mean_of = {g.column: np.nanmean(in_memory(source, g)) for g in every if g.column in parts and g.quantity}
+    coldest = min(mean_of, key=lambda c: mean_of[c], default="")
+    edges = [b for b, role in target.boundaries.items() if role is Role.AMBIENT] if target.places else ["ambient"]
+    has_room = any(Role.AMBIENT in roles_of(label)[:1] for label in hot.values())
+    if rest and coldest in instruments and is_spoken(hot[coldest], CABINET) and edges and not has_room:
+        every = [replace(g, place=edges[0], doubt=AS_ROOM) if g.column == coldest else g for g in every]
+        instruments -= {coldest}
     warmest = max((np.nanmax(in_memory(source, g)) for g in rest), default=np.inf)
     if any(is_spoken(hot[g.column], MACHINE) or roles_of(hot[g.column]) for g in rest):
         warmest = np.inf
@@ -299,11 +320,6 @@ def _read(source: Source, every: list[Guess]) -> list[Guess]:
             stays = (len(instruments) == len(hot) and not g.place) or is_spoken(g.place, INSTRUMENT)
             every[i] = replace(g, doubt=OF_INSTRUMENT) if stays else Guess(g.column, "", doubt=OF_INSTRUMENT)
     return every
-
-
-def is_flow_stage(label: str) -> bool:
-    """Does it name the stage of a fan, a pump or a cooler?"""
-    return is_stage(label) and (is_of_flow(label) or Role.COOLANT in roles_of(label))
 
 
 def is_of_flow(label: str) -> bool:
@@ -330,11 +346,14 @@ def guess(source: Source, column: str, target: Target) -> Guess:
     if not worded and values[0] in (0, 1) and bool((np.diff(values) == 1).all()):  # "Frame" of a camera
         return Guess(column, "", doubt="counts the rows")
     whole = {*values[np.isfinite(values)].tolist()} <= {*range(STATES)}
-    states = 2 if quantity in (AIR, LIQUID) else STATES if is_flow_stage(label) else 0
-    if not worded and states and {*values[np.isfinite(values)].tolist()} <= {*range(states)}:
+    flows = is_of_flow(label) or Role.COOLANT in roles_of(label)  # what a fan, a pump or a cooler does
+    if flows and not worded and whole and (is_stage(label) or np.nanmax(values) <= 1):
         return _fed(Guess(column, "flow_share", "1", why="name", doubt=STAGES), label, target)
     if quantity == "temperature" and not worded and whole:
         return Guess(column, "", doubt="a state, by its values")
+    of_fan = quantity == "speed" and AIR in quantities_of(label) and not is_spoken(label, MACHINE)
+    if of_fan and target.input_of(label, quantity) in ("", INPUTS["speed"]):
+        quantity, unit, doubt = "flow_share", "%", AS_FLOW
     unit, assumed = _unit(source, column, quantity, unit)
     if not unit_text and (match := FOREIGN.search(label) or ROUND.search(label)) and quantity != "temperature":
         if quantity == "speed" and not set(tokens(match[1])) & REMARK_WORDS:  # of a vehicle, or a counter
@@ -401,6 +420,8 @@ def _left_out(source: Source, column: str) -> str:
         return "the quality of a reading"
     if words & SPARE:
         return "a spare channel, by its name"
+    if words == {"bearing"} and any("longitude" in tokens(other) for other in source.labels.values()):
+        return "a heading, beside a longitude"
     if words & SPREAD:
         return "a spread of readings, not a reading"
     if words & NOTHING and unit in WEAK:
@@ -474,7 +495,7 @@ def _quantity(label: str, unit: str, target: Target) -> tuple[str, str, str]:
     if (feeds := target.input_of(label, "")) and (quantity := target.inputs[feeds]) in (by_name or [quantity]):
         return quantity, f"name like the input {feeds}", ""
     if roles_of(label) and by_name in ([], ["temperature"], ["vehicle_speed"]):
-        weak = not any(w in terms for w in tokens(label) for terms in ROLES.values())
+        weak = not any(is_spoken(label, terms) for terms in ROLES.values())
         return "temperature", "name of a part", BY_LETTERS if weak else ""
     if by_name and not (by_name == ["temperature"] and ANGLE.search(label)):
         worded = any(w in terms for w in tokens(label) for terms in QUANTITY.values() if len(w) > 1)
@@ -568,7 +589,7 @@ def single(guesses: list[Guess], target: Target, labels: Mapping[str, str]) -> l
         mixed = g.place == "ambient" and len(roles_of(g.column)) > 1  # the air of a frame
         later = {"current": bool(words & (SUPPLY | MEAN)), "power": not words & LOSS}.get(g.quantity, mixed)
         other = bool(g.place) and g.place not in words
-        outdoors = bool(g.place) and is_outer(g.column)  # a machine has its room around it
+        outdoors = bool(g.place and (is_within(g.column, OUTER) or is_spoken(g.column, INSTRUMENT)))  # no room of it
         more = len(words) * bool(g.place)  # "T room" is the room before "T chamber wall" is
         plain = not g.feeds or input_name(g) == g.feeds  # "Speed" is the speed before "S-1 [1/s]" is
         return is_setpoint(g.column), later, not READ & words, inlet, outdoors, other, g.why != SUREST, not plain, more
@@ -583,18 +604,13 @@ def single(guesses: list[Guess], target: Target, labels: Mapping[str, str]) -> l
             owner[key] = g.column
             if g.feeds and is_setpoint(g.column):
                 out[g.column] = replace(g, doubt="; ".join(filter(None, (g.doubt, DEMAND))))
-        elif (
-            g.feeds and (g.feeds not in target.inputs or _of_part(g, labels[owner[key]])) and not is_setpoint(g.column)
-        ):
+            continue
+        of_part = g.quantity == "power" and (roles_of(g.column) or LOSS & {*tokens(labels[owner[key]])})
+        if g.feeds and (g.feeds not in target.inputs or of_part) and not is_setpoint(g.column):  # of copper or iron
             out[g.column] = replace(g, feeds=input_name(g))
         else:
             out[g.column] = g.without(f"{owner[key]} gives {key} already")
     return [out[g.column] for g in guesses]
-
-
-def _of_part(g: Guess, owner: str) -> bool:
-    """Is it a power of one part, as of copper or iron, beside which others have theirs; or one beside a loss?"""
-    return g.quantity == "power" and bool(roles_of(g.column) or LOSS & {*tokens(owner)})
 
 
 def assigned(guesses: Sequence[Guess], source: Source, column: str, to: str, target: Target) -> list[Guess]:
@@ -621,17 +637,15 @@ def _moved(g: Guess, source: Source, to: str, target: Target) -> Guess:
         return g.without(MANUAL)
     if not source.is_numeric(g.column):
         raise InputError("holds words, not numbers", g.column, "a column of readings")
-    if to in target.places or to in target.boundaries:
-        quantity = "temperature"
-    elif to in target.inputs:
-        quantity = target.inputs[to] or g.quantity
-    elif to in USUAL:
-        quantity = USUAL[to]
-    else:
+    is_place = to in target.places or to in target.boundaries
+    quantity = "temperature" if is_place else target.inputs.get(to) or USUAL.get(to) or measure_of(to)
+    if not quantity and to not in target.inputs:
         raise InputError(f"the model has no '{to}'", g.column, ", ".join([*target.places, *target.inputs][:8]))
-    if g.quantity and quantity != g.quantity:
+    quantity = quantity or g.quantity
+    if g.quantity and quantity != g.quantity and g.doubt not in (ON_OFF, AS_FLOW):
         raise InputError(f"is a {g.quantity}, '{to}' wants a {quantity}".replace("_", " "), g.column, "another column")
-    unit = g.unit if g.unit in QUANTITIES[quantity].units else _unit(source, g.column, quantity, "")[0]
+    units = [unit for unit in (g.unit, unit_of(source.units[g.column])) if unit in QUANTITIES[quantity].units]
+    unit = units[0] if units else _unit(source, g.column, quantity, "")[0]
     place, feeds = (to, "") if quantity == "temperature" and to not in target.inputs else ("", to)
     return replace(g, quantity=quantity, unit=unit, place=place, feeds=feeds, why=OF_USER, doubt="")
 
@@ -639,7 +653,7 @@ def _moved(g: Guess, source: Source, to: str, target: Target) -> Guess:
 def input_name(g: Guess) -> str:
     """An input called after the column, with the unit that memory holds."""
     unit = QUANTITIES[g.quantity].feeds.rpartition("_")[2]
-    words = [w for w in tokens(g.column) if w.isascii()]
+    words = [w for w in tokens(g.column) if w.isascii() and w != unit.lower()]
     return "_".join([*words, unit]) if words else f"{g.quantity}_{unit}"
 
 

@@ -14,10 +14,10 @@ import numpy as np
 
 from geom.arrays import Array
 from geom.constants import RPM
-from geom.description.roles import SHORTEST, Role
+from geom.description.roles import Role
 from geom.errors import InputError
 from measured.headers.cells import number, split_unit, unit_of
-from measured.headers.words import LOSS, WORDS, axis_of, quantities_of, roles_of, tokens
+from measured.headers.words import LOSS, WORDS, axis_of, is_within, quantities_of, roles_of, tokens
 from measured.importing.source import read_source
 from measured.recordings.formats import guarded, matlab_variables
 from measured.recordings.units import QUANTITIES, converted
@@ -179,11 +179,11 @@ def _axis_names(columns: Mapping[str, tuple[str, Array]], file: Path) -> dict[st
 
 def _kind(name: str) -> str:
     """What part's loss a column is, "" for none."""
-    if not (_says(name, LOSS) or tokens(name)[:1] in (("p",), ("pv",))) or _says(name, WORDS["total"]):
+    if not (is_within(name, LOSS) or tokens(name)[:1] in (("p",), ("pv",))) or is_within(name, WORDS["total"]):
         return ""
     roles = roles_of(name)
-    if _says(name, WORDS["rubbing"]):
-        return "windage" if _says(name, WORDS["windage"]) else "mechanical"
+    if is_within(name, WORDS["rubbing"]):
+        return "windage" if is_within(name, WORDS["windage"]) else "mechanical"
     if Role.MAGNET in roles:
         return "magnet"
     if Role.CAGE in roles or {Role.WINDING, Role.ROTOR} <= {*roles}:
@@ -191,11 +191,6 @@ def _kind(name: str) -> str:
     if Role.WINDING in roles:
         return "copper-ac" if WORDS["alternating"] & {*tokens(name)} else "copper"
     return "rotor-iron" if Role.ROTOR in roles else "iron" if Role.IRON in roles else ""
-
-
-def _says(name: str, terms: frozenset[str]) -> bool:
-    """Does a word stand in a name, a long one also inside others?"""
-    return any(w in terms or any(len(t) >= SHORTEST and t in w for t in terms) for w in tokens(name))
 
 
 def _axis(i: str, name: str, unit: str, values: Array, units: Mapping[str, str], rated_rpm: float) -> Column:

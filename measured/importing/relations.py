@@ -32,6 +32,7 @@ STEP = 0.2  # of its span: a temperature does not jump by more from row to row
 DECIMALS = 5  # that loggers write
 COARSE = 12  # different values: fewer are a state or a step
 BLOCKS = 200  # of a record, over which readings are averaged
+NAMES = 8  # of columns, before the rest is counted
 NOISE_K = 0.2  # of sensors: no misfit below it tells columns apart
 
 
@@ -69,7 +70,8 @@ def functional_relations(hot: Mapping[str, Array], others: Mapping[str, Array], 
         sources = {n: every[n] for n in wide if n in hot and n != c and n not in out}
         before = [n for n in sources if c in others or wide.index(n) < wide.index(c)]
         near = partial(_within, every[c], margin, digit)
-        if copy := next((n for n in before if _is_copy(near, every[n], n, c in free)), ""):
+        scales = [(1.0, 0.0), *(SCALES if c in free else ())]  # of the units that temperatures have
+        if copy := next((n for n in before for a, b in scales if near(a * every[n] + b, [n], a)), ""):
             out[c] = f"{SAME} '{copy}'"
         elif sources:
             ways = (_extreme(every[c], sources, digit[c], digit), _mean(every[c], sources, near))
@@ -79,11 +81,6 @@ def functional_relations(hot: Mapping[str, Array], others: Mapping[str, Array], 
         if c not in out and n not in out and _is_filtered(full[c], full[n], 1.5 * max(digit[c], digit[n])):
             out[c] = f"'{n}', filtered"
     return out
-
-
-def _is_copy(near: partial[bool], other: Array, name: str, any_unit: bool) -> bool:
-    """Equal, or equal in one of the units that temperatures have?"""
-    return near(other, [name]) or (any_unit and any(near(a * other + b, [name], a) for a, b in SCALES))
 
 
 def is_equal(y: Array, other: Array) -> bool:
@@ -127,7 +124,7 @@ def _extreme(y: Array, others: Mapping[str, Array], margin: float, digit: Mappin
         reach = np.array([slack[n] <= limits[n] for n in within])
         alone = [n for n, at in zip(within, reach & (reach.sum(axis=0) == 1), strict=True) if at.mean() > 0.01]
         if len(alone) > 1:
-            return f"the {name} of {_names(alone)}"
+            return f"the {name} of {names_of(alone, 3)}"
     return ""
 
 
@@ -146,7 +143,7 @@ def _mean(y: Array, others: Mapping[str, Array], near: partial[bool]) -> str:
     mean = np.mean([others[n] for n in part], axis=0)
     tolerance = GAP * float(np.abs(y - mean).max())
     differ = all(float(np.abs(others[n] - y).max()) > tolerance for n in part)
-    return f"the mean of {_names(part)}" if near(mean, part) and differ else ""
+    return f"the mean of {names_of(part, 3)}" if near(mean, part) and differ else ""
 
 
 def _difference(y: Array, sources: Mapping[str, Array], near: partial[bool]) -> str:
@@ -182,8 +179,10 @@ def _is_filtered(y: Array, x: Array, limit: float) -> bool:
     return False
 
 
-def _names(columns: Sequence[str]) -> str:
-    return ", ".join(f"'{c}'" for c in columns[:3]) + (f" and {len(columns) - 3} more" if len(columns) > 3 else "")
+def names_of(columns: Sequence[str], most: int = NAMES) -> str:
+    """ "'a', 'b' and 3 more"."""
+    more = f" and {len(columns) - most} more" if len(columns) > most else ""
+    return ", ".join(f"'{c}'" for c in columns[:most]) + more
 
 
 def is_like_temperature(values: Array, starts: Sequence[float], band_K: float = START_K) -> bool:

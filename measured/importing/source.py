@@ -18,9 +18,9 @@ from geom.arrays import Array
 from geom.description.names import plain_header
 from geom.description.roles import Role
 from geom.errors import InputError
-from measured.headers.cells import EMPTY, SWITCH, WITH_UNIT, is_unit, number, split_unit, unit_of
+from measured.headers.cells import EMPTY, SWITCH, WITH_UNIT, is_date, is_unit, number, split_unit, unit_of
 from measured.headers.rows import UNIT_NAMES, Layout, layout, transposed, trimmed
-from measured.headers.words import is_rise, is_time, quantities_of, roles_of, without_rise
+from measured.headers.words import RUNS, is_rise, is_time, quantities_of, roles_of, tokens, without_rise
 from measured.importing.long_table import side_by_side
 from measured.importing.text import text_table
 from measured.recordings.csv_file import CHUNK
@@ -42,6 +42,8 @@ TENFOLD = re.compile(r"(.*[^\W_])[ _]\(?[x×*](10+)\)?")  # T_wdg_x10: a registe
 LEAST_PATHS = 3  # with groups in common
 BOOKS = (".xlsx", ".xlsm")
 HOURS = re.compile(r"(?:[01]?\d|2[0-4])\s*[hH]\s*[0-5]\d")  # 10h05, by hand in French
+HALVES = re.compile(r"(?:(오전|上午|午前)|오후|下午|午後)\s*(\d[\d:.]*)")  # of a day, before the hour
+YEAR = re.compile(r"^\s*['’](?=\d\d[-/.]\d\d[-/.]\d\d\b)")
 POINTED = re.compile(r"(?:[01]?\d|2[0-3])\.[0-5]\d\.[0-5]\d")
 TAG = re.compile(r"\s*<[^<>]*>|\\[^\\]*:\d+$")  # of a channel, no part of its name: 101 Winding <TC K>, tStator\ETKC:1
 UNCALCULATED = re.compile(rb"</f>\s*(?:<v\s*/>|<v></v>)?\s*</c>")
@@ -53,12 +55,14 @@ class Source(DataTable):
 
     labels : column -> its name without the unit;  units : also those that stand in the names
     unnamed : the file has no header;  period_s : between rows, by its preamble
+    clock_of_each : rows of different signals have nothing in common, for each stands behind its own clock
     """
 
     file: Path = Path()
     labels: Mapping[str, str] = field(default_factory=dict)
     unnamed: bool = False
     period_s: float | None = None
+    clock_of_each: bool = False
     values: dict[str, Array] = field(default_factory=dict, compare=False, repr=False)
 
     def numbers(self, column: str) -> Array:
@@ -112,7 +116,7 @@ def read_source(file: Path) -> Source:
 
 
 def read_sources(file: Path) -> list[Source]:
-    """Any file a recorder writes; of a workbook all sheets with the columns of the largest.
+    """Any file a recorder writes; of a workbook all sheets with the columns of the largest, or with its other signals.
 
     InputError where it is no record, MissingDependency where a package is not there.
     """
@@ -160,16 +164,41 @@ def _of_sheets(file: Path) -> list[Source]:
     for name in sheets.keys() - plans.keys():
         with suppress(InputError):  # a page of words
             plans[name] = layout(sheets[name], str(file))
-    alike = [name for name in sheets if name in plans and plans[name].names == plans[largest].names]
-    notes = [f"{file.name}: a test from each of the worksheets {', '.join(alike)}"] * (len(alike) > 1)
+    signals = {name: _signals(name, plans[name], rows) for name, rows in sheets.items() if name in plans}
+    signals = {name: labels for name, labels in signals.items() if labels}
+    every = [label for labels in signals.values() for label in labels[1:]]
+    joint = len(signals) > 1 and largest in signals and len({*every}) == len(every)
+    alike = [*signals] if joint else [n for n in sheets if n in plans and plans[n].names == plans[largest].names]
+    what = "the signals of the worksheets {} are one test" if joint else "a test from each of the worksheets {}"
+    notes = [f"{file.name}: {what.format(', '.join(alike))}"] * (len(alike) > 1)
     notes += [f"{file.name}: worksheet '{name}' is left out" for name in sheets if name in plans.keys() - {*alike}]
-    out = []
-    for name in alike:
-        plan, rows = plans[name], sheets[name]
-        body = [row for row in rows[plan.first :] if any(c is not None and str(c).strip() for c in row)]
-        columns = [[row[j] if j < len(row) else None for row in body] for j in range(plan.width)]
-        out.append(source_of_table(file, plan, columns, [*notes, *_formulas(file)]))
-    return out
+    notes += _formulas(file)
+    tables = {name: _cells(plans[name], sheets[name]) for name in alike}
+    if not joint:
+        return [source_of_table(file, plans[name], columns, notes) for name, columns in tables.items()]
+    beside = [*zip(*itertools.zip_longest(*itertools.chain(*tables.values())), strict=True)]
+    names = _once(_plain([label for labels in signals.values() for label in labels]))
+    return [replace(_source(file, names, beside, {}, notes), clock_of_each=True)]
+
+
+def _signals(sheet: str, plan: Layout, rows: Sequence[Sequence[Any]]) -> list[str]:
+    """Names of the columns of a worksheet, none where no clock is the first or it is a run by its name; a single signal
+    is called after its sheet, unless its header alone says what it is."""
+    names, (at, *row) = [split_unit(name) for name in plan.names], rows[plan.first]
+    numeric = any(number(cell) == number(cell) for cell in row)
+    if RUNS & {*tokens(sheet)} or not numeric or not (is_time(names[0][0]) or is_date(at)):
+        return []
+    if len(names) == 2 and not roles_of(name := names[1][0]):
+        by_sheet = roles_of(sheet) or quantities_of(sheet) or not (unit_of(name) or quantities_of(name))
+        names[1] = (sheet if by_sheet else name, names[1][1] or unit_of(name))
+    units = [text or unit for text, (_, unit) in zip(plan.units, names, strict=True)]
+    return [f"{name} [{unit}]" if unit else name for (name, _), unit in zip(names, units, strict=True)]
+
+
+def _cells(plan: Layout, rows: Sequence[Sequence[Any]]) -> list[list[Any]]:
+    """Columns of a worksheet."""
+    body = [row for row in rows[plan.first :] if any(c is not None and str(c).strip() for c in row)]
+    return [[row[j] if j < len(row) else None for row in body] for j in range(plan.width)]
 
 
 def source_of_recording(file: Path, table: DataTable) -> Source:
@@ -275,10 +304,12 @@ def _without_groups(labels: Mapping[str, str]) -> dict[str, str]:
 
 
 def _with_colons(cells: Sequence[Any]) -> Sequence[Any]:
-    """Times of day that are written as 10h05, or as dates are, 09.14.05: a year that changes from row to row is a
-    second."""
+    """Times of day that are written as 10h05, 오후 1:05, or as dates are, 09.14.05: a year that changes from row to row
+    is a second. Years of two digits behind an apostrophe are whole."""
     if isinstance(cells, np.ndarray) or not all(isinstance(c, str) for c in cells):
         return cells
+    if all(HALVES.search(c) or YEAR.search(c) for c in cells[:9]):
+        return [YEAR.sub("20", HALVES.sub(lambda m: f"{m[2]} {'AM' if m[1] else 'PM'}", c)) for c in cells]
     if all(HOURS.fullmatch(c.strip()) for c in cells):
         return [re.sub(r"\s*[hH]\s*", ":", c.strip()) for c in cells]
     if not all(POINTED.fullmatch(c.strip()) for c in cells[:9]):

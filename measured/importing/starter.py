@@ -29,7 +29,7 @@ from measured.headers.words import (
     roles_of,
     tokens,
 )
-from measured.importing.guess import AS_WINDING, AXES, OF_INSTRUMENT, Array, Guess, in_memory, is_whole
+from measured.importing.guess import AS_WINDING, AXES, OF_INSTRUMENT, ON_OFF, Array, Guess, in_memory, is_whole
 from measured.importing.source import Source
 
 NOISE = 0.02  # of the largest: as far below zero a power meter may read when nothing flows
@@ -236,6 +236,7 @@ def heating(columns: Columns, quantity: str) -> list[tuple[Source, Guess]]:
     """
     candidates = [(s, g) for s, g in columns if g.quantity == quantity and g.feeds]
     if quantity != "power":
+        candidates = [(s, g) for s, g in candidates if g.doubt != ON_OFF] or candidates
         return [(s, g) for s, g in candidates if not STIRS & {*quantities_of(s.labels[g.column])}]
     kinds = {g.quantity for _, g in columns if g.feeds}
     lost = [(s, g) for s, g in candidates if LOSS & {*tokens(s.labels[g.column])}]

@@ -61,9 +61,14 @@ def target_of(network: Network) -> Target:
     identities = network.identities
     roles = {name: identity.role for name, identity in identities.items()}
     places = {n: roles.get(n, roles.get(p.part)) for n, p in network.places.items() if n not in network.boundaries}
-    inputs = {n: network.measures(n) or UNITS.get(n.rpartition("_")[2], "") for n in sorted(network.inputs)}
+    inputs = {n: network.measures(n) or measure_of(n) for n in sorted(network.inputs)}
     inputs.pop("time_s", None)
     return Target(places, {b: roles.get(b) for b in network.boundaries}, inputs)
+
+
+def measure_of(name: str) -> str:
+    """The quantity that the unit at the end of an input's name says, "" where it says none."""
+    return UNITS.get(name.rpartition("_")[2], "") if "_" in name else ""
 
 
 def _best(scores: Mapping[str, float]) -> tuple[str, str]:

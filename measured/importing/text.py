@@ -44,6 +44,7 @@ TIMES = {"ms": 1e-3, "min": 60.0, "h": 3600.0}
 DEGREE = 5  # letters: every second header has one, and no page but the right one makes it
 PAIR = r"[^\W\d]\w*=[^\s=]+(?: [^\s=\d][^\s=]*(?!\S))?"  # of a line that a program logged
 LOGGED = re.compile(rf"^(\d\S*[ T]\d\d:\S+|\d+:\d\d:\S+)(?=\s)[^=\n]*?((?:\s{PAIR})+)\s*$", re.MULTILINE)
+POINT = re.compile(r"^([^\s=,]+(?:,\S+=\S+)?) ([^\s=,]+=\S+?)[iu]? (\d{10,19})(?=\r?$)", re.MULTILINE)  # a,b=c d=5i 17
 SERIES = (("name", "label", "channel", "signal", "title", "target"), ("unit", "units"))  # of readings, in JSON
 TITLE = re.compile(rf"(?:.*\.)?_*(?:{'|'.join(SERIES[0])})_*")  # metric.__name__
 ARROW = re.compile(r"^(\d{1,2}:\d{2}:\d{2}[.,]\d+) -> ", re.MULTILINE)  # a serial monitor's time before each line
@@ -91,6 +92,8 @@ def text_table(file: Path) -> tuple[Layout, Columns, list[str], float | None]:
         lines = lines.edited(lambda line: FORTRAN.sub("E", line))
     if ARROW.search(start):
         lines = lines.edited(lambda line: ARROW.sub(lambda match: f"{match[1]}\t", line))
+    if len({point[1] for point in POINT.finditer(start)}) == 1:
+        lines = lines.edited(lambda line: re.sub(r"[iu]?,", "\t", POINT.sub(r"\3,\2", line)))
     if len(LOGGED.findall(start)) > 9:
         lines = lines.edited(_logged)
     first = next((line for line in lines if line.strip()), "")
@@ -111,7 +114,7 @@ def text_table(file: Path) -> tuple[Layout, Columns, list[str], float | None]:
         cells = [*map(list, zip(*(row for row in cells if len(row) > 1), strict=False))]
         rows, sign = ["\t".join(row) + "\n" for row in cells], "\t"
     if keys := _keys(cells):
-        every = [_by_key(row) for row in split_cells([*rows], sign) if any(row)]
+        every = [dict(map(_pair, reversed(row))) for row in split_cells([*rows], sign) if any(row)]
         readings = [[row.get(key) for key in keys] for row in every if 2 * len(row.keys() & {*keys}) > len(keys)]
         unlike = f"{file.name}: {len(every) - len(readings)} lines without the names of the others are left out"
         notes += [unlike] * (len(readings) < len(every))
@@ -276,13 +279,8 @@ def _raw(rows: Sequence[Sequence[str | None]], width: int) -> Columns:
     return [[row[j] if j < len(row) else None for row in rows] for j in range(width)]
 
 
-def _by_key(row: list[str]) -> dict[str, str]:
-    """Name -> cell of a row such as "T1: 23.5, T2: 24.1"; "" for the first without one."""
-    return dict(reversed([_pair(cell) for cell in row]))
-
-
 def _pair(cell: str) -> tuple[str, str]:
-    """Name and reading; "Mo. 03.06.2024 23:40" is no reading of 40."""
+    """Name and reading, as in "T1: 23.5"; "Mo. 03.06.2024 23:40" is no reading of 40."""
     match = None if is_date(cell) else KEYED.fullmatch(cell)
     return (match[1], match[2]) if match else ("", cell)
 
@@ -324,8 +322,8 @@ def encoding_of(parts: Callable[[], Iterable[bytes]], file: Path) -> str:
     if utf8:
         return "utf-8"
     lines = (line for part in parts() for line in part.splitlines() if not line.isascii())
-    cells = (cell for line in lines for cell in re.split(rb"[,;\t]", line) if not cell.isascii())
-    odd = dict[bytes, None]()  # each cell counts once, however often a column has it
+    cells = (re.sub(rb"\d", b"", cell) for line in lines for cell in re.split(rb"[,;\t]", line) if not cell.isascii())
+    odd = dict[bytes, None]()  # each cell counts once, however often a column has it and whatever its numbers
     while len(b"\n".join(odd)) < ODD and (some := [*itertools.islice(cells, ODD)]):
         odd |= dict.fromkeys(some)
     return _page(b"\n".join(odd)[:ODD])

@@ -167,6 +167,31 @@ def test_a_sensor_of_another_scale_or_hardly_read(tmp_path, change, words):
     assert [(f["test"], f["where"]) for f in found["doubts"] if words in f["what"]] == [("stand", "T_flange")]
 
 
+@pytest.mark.parametrize(
+    ("name", "least", "doubted"),
+    [
+        ("T_flange", 18.5, False),
+        ("T_flange", -15.0, True),
+        ("T_suction pipe", -15.0, False),
+        ("Verdampfer", -15.0, False),
+    ],
+)
+def test_a_place_may_fall_as_far_as_its_surroundings_or_where_its_name_says_cold(tmp_path, name, least, doubted):
+    """Beside parts that warm by tens of kelvin: wires that are swapped mirror that at the room."""
+    case = case_of(tmp_path)
+
+    def cooled(table):
+        start, n = table["T_flange"].iloc[0], len(table)
+        table["air"] = [min(start, 17.0)] * n
+        table["T_flange"] = [max(least, start - 0.5 * k) for k in range(n)]
+        table.rename(columns={"T_flange": name}, inplace=True)
+
+    changed(case, "stand", cooled)
+    edited(case / "tests" / "stand.toml", "columns.T_flange", f'columns."{name}"')
+    found = [f for f in findings(case) if "wires swapped" in f["what"]]
+    assert [f["where"] for f in found] == [name] * doubted
+
+
 def hourly(table):
     """Rows an hour apart: a winding that was on for one of them is back by the next."""
     table["time_s"] *= 360.0

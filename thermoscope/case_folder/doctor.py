@@ -10,6 +10,7 @@ import numpy as np
 
 from lumped.model.network import Link, Network, Source
 from lumped.transfer.laws import InputPower
+from measured.headers.words import COLD, is_spoken
 from measured.recordings.sheet import Column
 from measured.recordings.tables import standing_still
 from measured.recordings.units import ROOM_F, ROOM_K
@@ -44,8 +45,14 @@ def examined(patients: list[Patient], network: Network) -> tuple[Finding, ...]:
 
 
 def _reversed(p: Patient, network: Network) -> Iterator[Finding]:
-    """A sensor of the machine that falls as the others rise: a thermocouple with its wires swapped."""
+    """A sensor of the machine that falls as the others rise: a thermocouple with its wires swapped.
+
+    A place that is cold by its name may fall, and any place as far as the coldest of what surrounds the machine.
+    """
     columns = {c.name: p.samples.values[c.name] for c in _within(p, network)}
+    edges = [np.nanmin(p.samples.values[c.name]) for c in p.sheet.columns if c.place in network.boundaries]
+    least = min([*edges, *p.sheet.boundaries.values()], default=np.inf) - WARM_K
+    cold = {c.name for c in _within(p, network) if is_spoken(f"{c.header} {c.place}", COLD)}
     moves = {
         n: float(v[finite[-1]] - v[finite[0]])
         for n, v in columns.items()
@@ -53,11 +60,12 @@ def _reversed(p: Patient, network: Network) -> Iterator[Finding]:
     }
     for name, move in moves.items():
         rise = float(np.median([m for n, m in moves.items() if n != name] or [0.0]))
-        if rise > WARM_K and move < -max(WARM_K, SWAPPED * rise):
+        below = name not in cold and np.nanmin(columns[name]) < least
+        if below and rise > WARM_K and move < -max(WARM_K, SWAPPED * rise):
             yield p.finding(
                 name,
-                f"falls by {-move:.0f} K while the others rise: are its wires swapped?",
-                "use = false, or the wires the right way round",
+                f"falls by {-move:.0f} K while the others rise: are its wires swapped, or is it cooled below the room?",
+                "use = false, or the wires the right way round; leave it where something cools it",
             )
 
 

@@ -54,7 +54,7 @@ class Format:
 
     stamp : row -> cell of the clock;  scale : letter -> (factor, offset) from the unit of memory into that of the file
     cells : letter -> row -> cell of a column that is no number;  doubt : words that must be said
-    without : letters that are left out though they have a meaning
+    without : letters that are left out though they have a meaning;  switches : columns that are on and off
     """
 
     columns: str
@@ -75,6 +75,7 @@ class Format:
     name: str = "a.csv"
     row: object = None
     digits: int = 2
+    switches: tuple[str, ...] = ()
 
     def header(self) -> list[str]:
         return self.names if self.names is not None else [NAMES[c] for c in self.columns]
@@ -115,6 +116,10 @@ def at(form: str, step_s: float = 5.0):
 def german(k: int) -> str:
     now = BEGUN + timedelta(seconds=5 * k)
     return f"{now.day}. {GERMAN[now.month - 1]} {now.year} {now:%H:%M:%S}"
+
+
+def korean(now: datetime) -> str:
+    return f"{now:%Y-%m-%d} {'오전' if now.hour < 12 else '오후'} {(now.hour - 1) % 12 + 1}:{now:%M:%S}"
 
 
 IWA, PWA = [NAMES[c] for c in "IWA"], [NAMES[c] for c in "PWA"]
@@ -650,6 +655,7 @@ FORMATS: dict[str, Format] = {
         "\t",
         units=["s", "A", "deg C", "deg C", "-", ""],
         cells={"z": lambda k: "TRUE" if k > 9 else "FALSE"},
+        switches=("xBrkOn",),
     ),
     "turns in danish": Format("tnWA", ["Tid", "Omdrejningstal (o/min)", "Vikling (°C)", "T_a (°C)"], ";", ","),
     "microseconds unsaid": Format(
@@ -780,5 +786,43 @@ FORMATS: dict[str, Format] = {
         ["YYYY", "MM", "DD", "hh", "mm", "ss.fff", *IWA],
         cells={c: at(f) for c, f in zip("uvwxy", ("%Y", "%m", "%d", "%H", "%M"))},
         stamp=at("%S.000"),
+    ),
+    "a year behind an apostrophe": Format(
+        "tInWA",
+        ["日時", "CH01 電流[A]", "CH02 回転速度[r/min]", "CH03 モータ巻線[℃]", "CH04 室温[℃]"],
+        before="ロガー,NR\nサンプリング,5s\n\n",
+        stamp=at("'%y-%m-%d %H:%M:%S"),
+        encoding="cp932",
+    ),
+    "korean halves of a day": Format(
+        "tInWHA",
+        ["일시", "전류(A)", "회전속도(rpm)", "권선온도(℃)", "외함온도(℃)", "주위온도(℃)"],
+        stamp=lambda k: korean(BEGUN + timedelta(seconds=5 * k - 200)),
+        encoding="cp949",
+    ),
+    "hours, minutes and seconds in one number": Format("tIWA", ["TIME", *IWA], stamp=at("%H%M%S", 20), step_s=20),
+    "thai": Format("tIWHA", ["เวลา (วินาที)", "กระแส (A)", "อุณหภูมิขดลวด (°C)", "อุณหภูมิตัวเรือน (°C)", "อุณหภูมิห้อง (°C)"]),
+    "finnish": Format(
+        "tInWHBA",
+        [
+            "Aika [s]",
+            "Virta [A]",
+            "Pyörimisnopeus [1/min]",
+            "Käämi U [°C]",
+            "Runko [°C]",
+            "Laakeri [°C]",
+            "Ympäristö [°C]",
+        ],
+        ";",
+        ",",
+    ),
+    "slovene, and a brake in words": Format(
+        "tInWHAz",
+        ["Čas (s)", "Tok (A)", "Vrtljaji (vrt/min)", "Navitje (°C)", "Ohišje (°C)", "Okolica (°C)", "Bremse"],
+        ";",
+        ",",
+        encoding="cp1250",
+        cells={"z": lambda k: "offen" if k // 7 % 2 else "zu"},
+        switches=("Bremse",),
     ),
 }

@@ -1,5 +1,7 @@
 """Files as benches, controllers and CAN tools write them: runs in one file, ratios as units, powers of parts."""
 
+from datetime import datetime, timedelta
+
 import numpy as np
 import openpyxl
 import pytest
@@ -116,7 +118,7 @@ def test_what_is_no_reading_of_the_machine_is_left_out(tmp_path):
 def test_powers_of_parts_are_each_an_input(tmp_path):
     target = Target({"winding": Role.WINDING}, {}, {"power_W": "power"})
     source = read_source(read(tmp_path, **{"T_winding [°C]": 20 + T, "P_Cu [W]": 1 + T, "P_Fe [W]": 2 + T}))
-    assert [g.feeds for g in guesses(source, ["t [s]"], target)] == ["", "power_W", "p_fe_w_W"]
+    assert [g.feeds for g in guesses(source, ["t [s]"], target)] == ["", "power_W", "p_fe_W"]
 
 
 @pytest.mark.parametrize("sign", ["clock", "number"])
@@ -161,6 +163,42 @@ def test_sheets_with_the_same_columns_are_tests_and_others_are_named(tmp_path):
         "a test from each of the worksheets Run 1, Run 2",
         "worksheet 'Sheet' is left out",
     ]
+
+
+@pytest.mark.parametrize("clock", [float, lambda s: datetime(2026, 3, 28, 23, 58) + timedelta(seconds=s)])
+def test_a_sheet_for_each_signal_is_one_test(tmp_path, clock):
+    """Each at its own times, of its own length and begun at its own instant; a summary is no signal."""
+    book, truth = openpyxl.Workbook(), {}
+    book.active.append(["Summary", "of all"])
+    for sheet, unit, begin, step, rows in (
+        ("Winding", "°C", 0, 5, 60),
+        ("Raum", "°C", 10, 30, 12),
+        ("Strom", "A", 4, 2, 140),
+    ):
+        page = book.create_sheet(sheet)
+        page.append(["Zeit [s]" if clock is float else "Zeit", f"Wert [{unit}]"])
+        truth[sheet] = {begin + step * k: 20.0 + k for k in range(rows)}
+        for second, value in truth[sheet].items():
+            page.append([clock(second), value])
+    book.save(tmp_path / "a.xlsx")
+    [(source, at)] = read_runs(tmp_path / "a.xlsx")
+    for sheet, readings in truth.items():
+        (column,) = (c for c in source.columns if c.startswith(sheet))
+        read = source.numbers(column)
+        found = dict(zip(np.round(at.seconds[np.isfinite(read)], 3).tolist(), read[np.isfinite(read)], strict=True))
+        assert found == {second: value for second, value in readings.items() if second <= 282}  # as Strom ends
+    assert "the signals of the worksheets Winding, Raum, Strom are one test" in " ".join(source.notes)
+
+
+def test_sheets_of_signals_that_share_no_time_are_refused(tmp_path):
+    book = openpyxl.Workbook()
+    for sheet, begin in (("Winding", 0), ("Room", 900)):
+        page = book.create_sheet(sheet)
+        for row in (["t [s]", "value"], *([begin + t, 20 + t] for t in T.tolist())):
+            page.append(row)
+    book.save(tmp_path / "a.xlsx")
+    with pytest.raises(InputError, match="never run at one time"):
+        read_runs(tmp_path / "a.xlsx")
 
 
 def test_the_clocks_unit_behind_the_label_of_the_row_of_units():

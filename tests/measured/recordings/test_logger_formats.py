@@ -6,7 +6,7 @@ from logger_formats import FORMATS, ROWS, signals
 
 from geom.description.names import plain_header
 from measured.importing.clock import clock_of
-from measured.importing.guess import guesses, in_memory
+from measured.importing.guess import ON_OFF, guesses, in_memory
 from measured.importing.source import read_source
 from thermoscope.commands.test.new import first_model
 
@@ -36,7 +36,8 @@ def test_every_column_is_what_it_was_written_as(tmp_path, kind):
     source = read_source(tmp_path / form.name)
     clock = clock_of(source)
     found = guesses(source, clock.columns, first_model([(source, clock)], {}).target)
-    used = {g.column: g for g in found if g.used}
+    assert {g.column for g in found if g.used and g.doubt == ON_OFF} == {*form.switches}
+    used = {g.column: g for g in found if g.used and g.doubt != ON_OFF}
     assert clock.seconds[:ROWS] == pytest.approx(form.step_s * np.arange(ROWS), abs=2e-3 * form.step_s)
     assert form.doubt in " ".join([clock.doubt, *source.notes, *(g.doubt for g in found)])
     values = signals(form.step_s)

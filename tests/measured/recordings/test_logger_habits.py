@@ -9,12 +9,13 @@ import pytest
 
 from geom.description.roles import Role
 from geom.errors import InputError
+from lumped.model.quantities import INPUTS
 from measured.headers.cells import split_unit
 from measured.headers.words import roles_of
 from measured.importing.aligned import Recording, shift
 from measured.importing.case_files import read_runs
 from measured.importing.clock import clock_of
-from measured.importing.guess import guesses, in_memory
+from measured.importing.guess import AS_FLOW, AS_ROOM, ON_OFF, guesses, in_memory
 from measured.importing.source import read_source
 from thermoscope.commands.test.new import Wishes, first_model
 from thermoscope.commands.test.new import new_case as new
@@ -224,6 +225,68 @@ def test_the_frequency_of_the_supply_is_the_speed_where_none_was_recorded(tmp_pa
     assert in_memory(source, guess).max() == pytest.approx(3000.0 if feeds == "speed_rpm" else most_Hz)
 
 
+@pytest.mark.parametrize("name", ["T_cabinet", "T_Schaltschrank"])
+def test_a_cabinet_is_the_room_where_no_other_is_and_all_parts_are_warmer(tmp_path, name):
+    found, _ = read(file(tmp_path, f"t [s],I [A],T_winding [°C],{name} [°C]", "t", "I", "W", "A"))
+    assert goes(found) == {"I [A]": "current_A", "T_winding [°C]": "winding", f"{name} [°C]": "ambient"}
+    assert AS_ROOM in found[f"{name} [°C]"][0].doubt
+    found, _ = read(file(tmp_path, f"t [s],I [A],T_winding [°C],{name} [°C],Room [°C]", "t", "I", "W", "A", "A"))
+    assert goes(found)["Room [°C]"] == "ambient"
+    assert f"{name} [°C]" not in goes(found)
+    found, _ = read(file(tmp_path, f"t [s],I [A],T_winding [°C],{name} [°C]", "t", "I", "H", "W"))
+    assert f"{name} [°C]" not in goes(found)  # it is warmer than the winding: of an inverter in there
+
+
+@pytest.mark.parametrize("words", [("1", "0"), ("on", "off"), ("TRUE", "FALSE")])
+def test_what_is_on_and_off_is_an_input_where_no_other_says_the_same(tmp_path, words):
+    brake = [words[k // 17 % 2] for k in range(N)]
+    names = "t [s],I [A],T_winding [°C],Room [°C],Brake,Main contactor"
+    found, _ = read(file(tmp_path, names, "t", "I", "W", "A", brake, [words[0 if on else 1] for on in ON]))
+    assert goes(found)["Brake"] == "brake_percent"
+    assert found["Brake"][0].doubt == ON_OFF
+    assert "Main contactor" not in goes(found)  # it is where the current is
+
+
+def test_the_speed_of_a_fan_is_a_flow_and_none_of_the_machine(tmp_path):
+    fan = np.where(np.arange(N) > 80, 1200.0, 600.0)
+    source = file(tmp_path, "t [s],I [A],T_winding [°C],Room [°C],fan_rpm", "t", "I", "W", "A", fan)
+    found, _ = read(source)
+    g, read_source = found["fan_rpm"]
+    assert (g.quantity, g.feeds, g.doubt) == ("flow_share", "flow_percent", AS_FLOW)
+    assert in_memory(read_source, g) == pytest.approx(fan)
+    for place, quantity in (("fan_rpm", "speed"), ("speed", "speed"), ("flow_share", "flow_share")):
+        out = tmp_path / place
+        assert new([source], Wishes(out=out, yes=True, places={"fan_rpm": place}), str(tmp_path / "new.json")) == 0
+        (column,) = (
+            c
+            for c in json.loads((tmp_path / "new.json").read_text())["tests"][0]["columns"]
+            if c["column"] == "fan_rpm"
+        )
+        assert (column["feeds"], column["quantity"]) == (INPUTS.get(place, place), quantity)
+
+
+def test_a_cooler_that_is_on_and_off_in_signs_without_blanks(tmp_path):
+    on = [str(k // 23 % 2) for k in range(N)]
+    found, _ = read(file(tmp_path, "时间(s),电流(A),电机绕组温度,环境温度,冷却风机", "t", "I", "W", "A", on))
+    assert found["冷却风机"][0].quantity == "flow_share"
+    assert [g.doubt for g, _ in found.values() if g.place] == ["", ""]
+
+
+def test_a_heading_beside_a_longitude_is_no_bearing(tmp_path):
+    heading, east = (7.0 * np.arange(N)) % 360, 11.5 + 1e-4 * np.arange(N)
+    names = "t [s],Longitude,Bearing,T_winding [°C],T_amb [°C],I [A]"
+    found, _ = read(file(tmp_path, names, "t", east, heading, "W", "A", "I"))
+    assert goes(found) == {"T_winding [°C]": "winding", "T_amb [°C]": "ambient", "I [A]": "current_A"}
+    found, _ = read(file(tmp_path, names.replace("Longitude", "Bearing 2"), "t", "H", "H", "W", "A", "I"))
+    assert goes(found)["Bearing"] == "bearing"
+
+
+def test_the_room_of_the_machine_goes_before_that_of_a_converter(tmp_path):
+    names = "t [s],T_stator [°C],Ambient temp (converter) [°C],Nacelle ambient temp [°C],I [A]"
+    found, _ = read(file(tmp_path, names, "t", "W", "H", "A", "I"))
+    assert [c for c, place in goes(found).items() if place == "ambient"] == ["Nacelle ambient temp [°C]"]
+
+
 def test_a_place_by_hand_is_not_doubted(tmp_path):
     source = file(tmp_path, "t [s],winding [°C],Xyz 7 [°C],room [°C],I [A]", "t", "W", "H", "A", "I")
     wishes = Wishes(out=tmp_path / "made", yes=True, places={"Xyz 7 [°C]": "pulley"})
@@ -347,6 +410,8 @@ def test_a_labview_file_has_its_units_in_its_second_head_and_no_groups(tmp_path)
         ("oil inlet", Role.COOLANT),
         ("Bain d'huile", None),
         ("T escobillas", Role.COMMUTATOR),
+        ("Olie boven", None),  # no oven
+        ("teplota okolia", Role.AMBIENT),
     ],
 )
 def test_names_of_parts_in_the_words_of_other_shops(name, role):

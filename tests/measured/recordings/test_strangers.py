@@ -915,3 +915,16 @@ def test_a_header_may_name_more_than_its_rows_fill(tmp_path):
     (test,) = case.case.tests
     assert [c.name for c in test.channels] == ["T_winding [degC]"]
     assert test.channels[0].y[-1] == pytest.approx(S["W"][-1], abs=0.01)
+
+
+def test_lines_of_a_time_series_database(tmp_path):
+    """Of one series; of several the rows of one instant are several, which are no clock."""
+    lines = [
+        f"bench,machine=M7 winding_degC={w:.2f},room_degC={a:.2f},I_A={i:.2f},turns={k}i {10**9 * (1774697470 + 5 * k)}"
+        for k, (w, a, i) in enumerate(zip(S["W"], S["A"], S["I"]))
+    ]
+    (tmp_path / "a.txt").write_text("\n".join(lines) + "\n")
+    [(source, clock)] = read_runs(tmp_path / "a.txt")
+    assert (clock.start, clock.end_s) == (1774697470, S["t"][-1])
+    assert source.numbers("winding_degC") == pytest.approx(S["W"], abs=0.006)
+    assert source.numbers("turns") == pytest.approx(np.arange(len(S["t"])))

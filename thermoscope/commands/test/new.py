@@ -30,7 +30,7 @@ from measured.importing.draft import ASSUMED_ROOM, Draft, test_name
 from measured.importing.guess import Guess, assigned, guesses
 from measured.importing.source import Source, signature
 from measured.importing.starter import FirstNetwork, of_machine, place_of, starter
-from measured.importing.target import Target, target_of
+from measured.importing.target import Target, measure_of, target_of
 from measured.recordings.invalid_readings import coded
 from thermoscope.commands.pairs import read_pairs
 from thermoscope.console.options import Json
@@ -210,7 +210,8 @@ def _at_place(source: Source, g: Guess, place: str) -> Guess:
     """A column of a first network at the place that --place says; an input keeps what was guessed of it."""
     if place == g.feeds or not source.is_numeric(g.column):
         return g
-    free, part = replace(g, quantity="", feeds=""), place and place not in {*INPUTS, *USUAL}
+    is_input = place in {*INPUTS, *USUAL} or (g.quantity != "temperature" and measure_of(place))
+    free, part = replace(g, quantity="", feeds=""), place and not is_input
     return assigned([free], source, g.column, place, Target({place: None} if part else {}))[0]
 
 
