@@ -75,7 +75,7 @@ def result_key(folder: CaseWithFiles, *rooms: str) -> str:
 
 @cache
 def code_digest(*rooms: str) -> bytes:
-    """A digest of all modules of these packages, and of those that hold what other packages add."""
+    """A digest of all modules and tables of these packages, and of those that hold what other packages add."""
     content = hashlib.sha256()
     for file in [*_modules(rooms), *_added()]:
         content.update(file.read_bytes())
@@ -86,7 +86,7 @@ def _modules(rooms: tuple[str, ...]) -> Iterator[Path]:
     for room in rooms:
         spec = find_spec(room)
         for home in (spec and spec.submodule_search_locations) or ():
-            yield from sorted(Path(home).rglob("*.py"))
+            yield from sorted(file for file in Path(home).rglob("*.*") if file.suffix in (".py", ".csv"))
 
 
 def _added() -> Iterator[Path]:
