@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from dataclasses import dataclass
-from fnmatch import fnmatch
 from typing import Any
 
 import numpy as np
@@ -17,7 +16,7 @@ from simulated.physics import conduction
 from simulated.physics.conduction import Solid
 from simulated.physics.draws import Draws
 from simulated.physics.losses import copper
-from simulated.physics.materials import RESIN, SLOPES
+from simulated.physics.materials import RESIN, SLOPES, nominal_contact
 from simulated.physics.plant import TOLERANCE_W, Plant
 from simulated.physics.surfaces import Conditions
 from simulated.pm import films as pm_films
@@ -25,18 +24,6 @@ from simulated.pm import films as pm_films
 Array = NDArray[np.float64]
 WINDING = {"winding": 0.45, "winding.left": 0.35, "winding.right": 0.35}  # part -> share of copper in it
 IN_ROTOR = 0.15  # of the magnetic loss: in the magnets
-CONTACTS = (
-    ("slot.gap|stator.core", 5000.0),
-    ("slot.gap|slot.liner", 5000.0),
-    ("slot.liner|winding", 1000.0),
-    ("winding|winding.*", 50_000.0),
-    ("magnets|rotor.core", 520.0),
-    ("rotor.core|shaft", 4000.0),
-    ("bearing.*|shaft", 150.0),
-    ("bearing.*|endcap.*", 1500.0),
-    ("base|foot", 500.0),
-    ("*", 1000.0),
-)
 
 
 @dataclass(frozen=True)
@@ -105,13 +92,9 @@ class PmPlant(Plant):
         return losses.R20 * sum(share * float(copper(self.mean(p, T))) for p, share in self.copper_shares().items())
 
 
-def nominal_contact(name: str) -> float:
-    return next(value for pattern, value in CONTACTS if fnmatch(name, pattern))
-
-
 def contacts(names: Iterable[str], draws: Draws) -> dict[str, float]:
     """Conductance of every contact (W/m2/K); left and right are alike, the base's is one of the hidden values."""
-    return {n: draws.around(f"contact.{_side(n)}", nominal_contact(n), 0.25) for n in names}
+    return {n: draws.around(f"contact.{_side(n)}", nominal_contact("pm", n), 0.25) for n in names}
 
 
 def _side(name: str) -> str:
