@@ -21,7 +21,6 @@ from lumped.model.once import once
 from measured.case import Case
 from validation.yardstick.black_box import BlackBoxLessons
 from validation.yardstick.free_network import Form, FreeNetwork, NetworkLessons, Shape
-from validation.yardstick.persistence import usual_rise
 from validation.yardstick.records import Columns, Record, row_step, table_columns, table_record
 from validation.yardstick.terms import Term, needed_terms
 
@@ -278,3 +277,28 @@ def rms(errors: Sequence[Array], steps: Sequence[float] = (1.0,)) -> float:
     seconds = [step * np.count_nonzero(~np.isnan(e)) for e, step in zip(errors, steps, strict=True)]
     squares = [step * np.nansum(e**2) for e, step in zip(errors, steps, strict=True)]
     return float(np.sqrt(np.sum(squares) / np.sum(seconds))) if np.any(seconds) else float("nan")
+
+
+@dataclass(frozen=True)
+class Persistence:
+    """What knows nothing: every sensor stays as it began, or keeps its usual distance from a boundary.
+
+    boundary : the column whose temperature the sensors follow, None where they stay;  rise (n_sensor,) K above it"""
+
+    boundary: int | None
+    rise: Array
+
+    def run(self, record: Record) -> Array:
+        """(n, n_sensor) degC"""
+        if self.boundary is None:
+            return np.broadcast_to(record.T[0], record.T.shape)
+        return record.boundary[:, [self.boundary]] + self.rise
+
+
+def usual_rise(records: Sequence[Record], boundary: int | None) -> Persistence:
+    """The model of some records."""
+    if boundary is None:
+        return Persistence(None, np.empty(0))
+    each = [np.where(r.read, r.T - r.boundary[:, [boundary]], 0.0).sum(axis=0) * r.step for r in records]
+    read = [r.read.sum(axis=0) * r.step for r in records]
+    return Persistence(boundary, np.sum(each, axis=0) / np.maximum(np.sum(read, axis=0), 1e-300))
