@@ -10,8 +10,7 @@ from numpy.typing import NDArray
 
 from extras.export.products import Product, Sum
 from extras.export.tables import Ranges, factors
-from thermoscope import InputError, Network
-from thermoscope import plugin as th
+from thermoscope import InputError, Network, plugin as th
 
 USUAL_C = 20.0  # where a run starts unless it is told
 WIDER = 1.5  # tables of unknown laws reach that much beyond what the fitted tests recorded

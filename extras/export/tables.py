@@ -14,8 +14,7 @@ from typing import Any
 import numpy as np
 
 from extras.export.products import Mapped, Positive, Powered, Product, Straight, Sum, Tabulated
-from thermoscope import InputError
-from thermoscope import plugin as th
+from thermoscope import InputError, plugin as th
 
 Ranges = Mapping[str, tuple[float, float]]
 TOLERANCE = 2e-4  # of the largest factor: a table adds as little as the parabolas of a simulation miss

@@ -12,8 +12,7 @@ from extras.rating.envelope import TIMES, LimitError, Rating, rated
 from extras.rating.hot_spots import hot_spots
 from extras.rating.operation import Operation
 from extras.rating.request import Rated
-from thermoscope import Record, simulate, steady
-from thermoscope import plugin as th
+from thermoscope import Record, plugin as th, simulate, steady
 
 STEADY_TIME_CONSTANTS = 20.0  # time constants
 

@@ -5,8 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Any
 
-from extras.workbench import revisions as ledger
-from extras.workbench import tables as rows
+from extras.workbench import revisions as ledger, tables as rows
 from extras.workbench.appearance import Appearance
 from extras.workbench.live import state_and_picture
 from extras.workbench.machines import Bench

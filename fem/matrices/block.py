@@ -11,8 +11,7 @@ import scipy.sparse as sp
 from fem.matrices import kernels
 from fem.matrices.bends import edge_table
 from fem.matrices.elements import Elements, HasTensor, Midsides
-from geom.arrays import Array as Floats
-from geom.arrays import Ints
+from geom.arrays import Array as Floats, Ints
 from geom.errors import InputError
 from geom.meshing.mesh import NamedMesh
 

@@ -25,8 +25,7 @@ from skfem.quadrature import get_quadrature
 from skfem.refdom import RefTet
 
 from fem.matrices import kernels
-from geom.arrays import Array as Floats
-from geom.arrays import Ints
+from geom.arrays import Array as Floats, Ints
 
 # Of every edge, of none, or of which of those from a to b (n, 3).
 Midsides = bool | Callable[[Floats, Floats], NDArray[np.bool_]]

@@ -23,8 +23,7 @@ from lumped.declarations.films import (
 )
 from lumped.model.quantities import AIR, LIQUID
 from lumped.schemas.reader import Table, powers
-from lumped.transfer.laws import Fixed, InputPower, Law, Power, Radiation
-from lumped.transfer.laws import Table as TableLaw
+from lumped.transfer.laws import Fixed, InputPower, Law, Power, Radiation, Table as TableLaw
 from lumped.transfer.properties import Fluid
 from lumped.transfer.shaft_fan import shaft_fan
 from lumped.transfer.streamed import Streamed

@@ -6,9 +6,7 @@ import pytest
 from simulated.physics.draws import Draws
 from simulated.physics.materials import nominal_contact
 from simulated.physics.surfaces import Conditions
-from simulated.pm import files as pm_files
-from simulated.pm import films as pm_films
-from simulated.pm import meters as pm_meters
+from simulated.pm import files as pm_files, films as pm_films, meters as pm_meters
 from simulated.pm.plant import contacts
 
 AT_REST = Conditions(8.0, 64.0, 0.0, 0.0, 0.0, 20.0)

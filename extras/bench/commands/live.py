@@ -11,8 +11,7 @@ from extras.bench.live.settings import read_bench
 from extras.bench.live.sources import source_of
 from extras.bench.live.steering import UNDECIDED, Steering
 from extras.bench.live.store import Store
-from thermoscope import InputError
-from thermoscope import plugin as th
+from thermoscope import InputError, plugin as th
 
 OPEN = (UNDECIDED, "the time is over", "the rows are at their end")
 

@@ -10,8 +10,7 @@ import numpy as np
 
 from extras.bench.measuring.repeats import Repeats, repeats
 from extras.bench.measuring.warming import Equilibrium, Warming, equilibrium, fit_eq8, spaced_window
-from thermoscope import InputError
-from thermoscope import plugin as th
+from thermoscope import InputError, plugin as th
 
 R = TypeVar("R")
 STEADY = 0.02  # a load that strays further from its mean (rms) is no constant load

@@ -16,8 +16,7 @@ import numpy as np
 
 from extras.bench.measuring.curves import ALIKE, LATE, constant
 from extras.bench.measuring.repeats import LEVEL
-from thermoscope import InputError
-from thermoscope import plugin as th
+from thermoscope import InputError, plugin as th
 
 Verdict = Literal["changed", "equal", "cannot tell"]
 WIDE = 0.05  # of a rise or a time constant: surer than that, nine in ten changes of a tenth are seen

@@ -12,8 +12,7 @@ from typing import Any, Literal
 import numpy as np
 
 from extras.bench.measuring.warming import equilibrium, spaced_window
-from thermoscope import InputError
-from thermoscope import plugin as th
+from thermoscope import InputError, plugin as th
 
 State = Literal["done", "to do", "refused", "doubtful"]
 ROOM_K = 1.0  # the machine counts as cold within this of the room

@@ -13,8 +13,7 @@ import numpy as np
 from extras.monitor.fleet import Population, population
 from extras.monitor.fleet.population import DIFFERS
 from extras.monitor.rows.fleet import STEP_S, Reader, histories, recordings
-from thermoscope import InputError
-from thermoscope import plugin as th
+from thermoscope import InputError, plugin as th
 
 WIDE = 50.0  # spread (%) of a parameter beyond which motors of one type seldom are; films and joints drift by a third
 FAR, LEAST_K = 3.0, 0.3  # times the usual error, and what that is at least: below it only noise is left

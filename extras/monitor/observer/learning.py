@@ -12,8 +12,7 @@ from extras.monitor.observer.joint_filter import JointFilter
 from extras.monitor.observer.observer import Observer, Sample, observer
 from extras.monitor.observer.process import Process
 from extras.monitor.observer.process_noise import ProcessNoise, thinned
-from thermoscope import Network, Parameter
-from thermoscope import plugin as th
+from thermoscope import Network, Parameter, plugin as th
 
 Progress = Callable[[str], None]
 HALF = 0.5  # of an effect: correlations that an effect follows are known within a factor

@@ -24,8 +24,7 @@ from thermoscope.case_folder.runs import (
     temperature_range,
 )
 from thermoscope.commands.open_case import needs_geometry, open_case
-from thermoscope.console.options import Case as CaseName
-from thermoscope.console.options import Json
+from thermoscope.console.options import Case as CaseName, Json
 from thermoscope.console.summary import Summary
 from thermoscope.console.terminal import give, progress
 from thermoscope.parts import required
