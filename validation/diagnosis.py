@@ -18,17 +18,9 @@ from validation.comparison.linearisation import rmse
 from validation.consistency import checks
 from validation.effects.above import KIND
 from validation.effects.base import Effect
-from validation.inference import refit, say
+from validation.inference import decide, refit, say
 from validation.inference.conditions import check_names, conditions, end_reach, law_errors
 from validation.inference.contradiction import contradiction
-from validation.inference.decide import (
-    Decision,
-    Posterior,
-    clear_decision,
-    consistent_decision,
-    decide,
-    steady_decision,
-)
 from validation.inference.events import retimed
 from validation.inference.evidence import (
     Evidence,
@@ -101,15 +93,17 @@ def diagnose(
     bases = base_hypotheses(training, progress)
     wrong = wrong_bases(bases)
 
-    def result(posterior: Posterior, preliminary: bool) -> Diagnosis:
+    def result(posterior: decide.Posterior, preliminary: bool) -> Diagnosis:
         small = fidelity_error(whole, case, posterior)
         most = {c: budget.get(c, 0.0) + small.get(c, 0.0) for c in {**budget, **small}}
-        choice = steady_decision(posterior, lambda p: clear_decision(p, decide(p.evidence, p.hypotheses), most))
+        choice = decide.steady_decision(
+            posterior, lambda p: decide.clear_decision(p, decide.decide(p.evidence, p.hypotheses), most)
+        )
         left, first = say.remainder(case, posterior, choice, posterior.single), choice.groups
         if not preliminary:
-            choice = consistent_decision(choice, checks(case, posterior, choice, most, left))
+            choice = decide.consistent_decision(choice, checks(case, posterior, choice, most, left))
         if wrong:  # nothing else is accused of what the base does
-            choice = Decision("data", (), choice.sure)
+            choice = decide.Decision("data", (), choice.sure)
         if choice.groups != first:
             left = say.remainder(case, posterior, choice, posterior.single)
         faults = PlainFaults(tuple(broken), tuple(wrong))
@@ -127,8 +121,8 @@ def infer(
     progress: Progress = no_progress,
     scope: Scope = EVERYTHING,
     quick: bool = False,
-    report: Callable[[Posterior], None] = untold,
-) -> Posterior:
+    report: Callable[[decide.Posterior], None] = untold,
+) -> decide.Posterior:
     """Calibrate, score, weigh every hypothesis, refit what carries weight.
 
     Parameters: as of `diagnose`; `report` is told the first odds. Returns: every hypothesis with its log evidence over
@@ -161,7 +155,7 @@ def infer(
     larger = joined(evidence, more, values)
     evidence = converged(sharpened(larger, range(first, first + len(selection))))
     hypotheses, heat = weigh(case, evidence, scan, fit.noise, progress)
-    first_odds = Posterior(evidence, tuple(relative_evidence(hypotheses)), tuple(heat), against)
+    first_odds = decide.Posterior(evidence, tuple(relative_evidence(hypotheses)), tuple(heat), against)
     report(first_odds)
     if quick:
         return first_odds
@@ -173,7 +167,7 @@ def infer(
         again = refit.weighty_refits(hypotheses)
         hypotheses, heat = weigh(case, evidence, scan, fit.noise, progress, warm_fits, again)
     every = refit.larger_sets(case, evidence, refit.fine_refits(evidence, hypotheses), progress)
-    return Posterior(evidence, tuple(relative_evidence(every)), tuple(heat), against)
+    return decide.Posterior(evidence, tuple(relative_evidence(every)), tuple(heat), against)
 
 
 def weigh(
@@ -202,8 +196,8 @@ def weigh(
 
 def tabulate(
     case: Case,
-    posterior: Posterior,
-    choice: Decision,
+    posterior: decide.Posterior,
+    choice: decide.Decision,
     broken: PlainFaults,
     bases: Sequence[BaseDeviance],
     left: Sequence[Remainder],
@@ -254,7 +248,7 @@ def tabulate(
     )
 
 
-def competing_models(e: Evidence, choice: Decision, single: Mapping[int, Weighed]) -> CompetingModels | None:
+def competing_models(e: Evidence, choice: decide.Decision, single: Mapping[int, Weighed]) -> CompetingModels | None:
     """The first group that could not be separated, with the refits of its leading members."""
     group = next((g for g in choice.groups if len(g) > 1), ())
     few = [k for k in group if not e.effects[k].whole][:RIVALS]
