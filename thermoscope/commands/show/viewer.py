@@ -101,8 +101,7 @@ def _file(folder: Folder) -> Path:
 
 def _documents(folder: Folder, tell: Progress) -> Iterator[dict[str, Any]]:
     from viz import split
-    from viz.viewer.error_map import ErrorMap
-    from viz.viewer.page import Earlier, Recorded, analysis_document, machine_document, temperature_document
+    from viz.viewer.page import Earlier, ErrorMap, Recorded, analysis_document, machine_document, temperature_document
 
     assert folder.built is not None
     machine, nodes, earlier = folder.built.machine, split(folder.built.mesh), runs.before_last(folder)
