@@ -85,7 +85,13 @@ def data(model: Model) -> str:
         ints("PLACE", T.part[:, th.PLACE]),
         ints("SEEN", [-1 if of is None else signals.index(of) for of, _ in model.sizes]),
         reals("SEEN_SIZE", [usual for _, usual in model.sizes]),
-        *_functions(F),
+        ints("PRODUCT_START", F.product_start),
+        reals("PRODUCT", F.coefficient),
+        ints("FUNCTION_START", F.function_start),
+        _matrix("FUNCTION", F.function, "int"),
+        _matrix("FUNCTION_A", F.parameters),
+        reals("FUNCTION_X", F.x),
+        reals("FUNCTION_Y", F.y),
         ints("OUTPUT_START", th.starts([r.index for r in rows])),
         ints("OUTPUT_AT", joined(r.index for r in rows)),
         reals("OUTPUT_WEIGHT", joined(r.weights for r in rows)),
@@ -96,18 +102,6 @@ def data(model: Model) -> str:
         f"#define FULL_UNITS ((thermal_real){th.FULL_UNITS})",
     ]
     return "\n".join(["/* The numbers of the model; see thermal_network_sizes.h. */", *parts, ""])
-
-
-def _functions(F: Flat) -> list[str]:
-    return [
-        ints("PRODUCT_START", F.product_start),
-        reals("PRODUCT", F.coefficient),
-        ints("FUNCTION_START", F.function_start),
-        _matrix("FUNCTION", F.function, "int"),
-        _matrix("FUNCTION_A", F.parameters),
-        reals("FUNCTION_X", F.x),
-        reals("FUNCTION_Y", F.y),
-    ]
 
 
 def joined(parts: Iterable[np.ndarray]) -> np.ndarray:
