@@ -65,10 +65,8 @@ def roles_table(roles: Iterable[Document]) -> Table:
 
 def diagnosis_tables(document: Document) -> tuple[Table, ...]:
     """Bases, explanations, candidates, events, contradictions, what would decide, and what cannot be seen."""
-    candidates, events = (
-        candidates_table(weighty_candidates(document["candidates"])),
-        events_table(document.get("events", [])),
-    )
+    candidates = candidates_table(weighty_candidates(document["candidates"]))
+    events = events_table(document.get("events", []))
     every = (
         bases_table(document.get("bases", [])),
         explanations_table(document.get("explanations", [])),

@@ -87,16 +87,14 @@ class Tab:
         server: Any = get_server(name, client_type="vue3")
         self.session = Session(bench, server, turn_to)
         draw(self.session)
-        self._server, self._task = (
-            server,
-            server.start(
-                backend="generic",
-                exec_mode="task",
-                show_connection_info=False,
-                open_browser=False,
-                timeout=0,
-                disable_logging=True,
-            ),
+        self._server = server
+        self._task = server.start(
+            backend="generic",
+            exec_mode="task",
+            show_connection_info=False,
+            open_browser=False,
+            timeout=0,
+            disable_logging=True,
         )
         self.session.open()
         started(self.session.watch_bench())

@@ -87,10 +87,8 @@ def read_motor_cad(path: Path, family_template: str) -> Draft:
         gap = file.number(key, 0.0, 10.0, usual=0.0)
         if gap and set(pair.split("|")) <= parts:
             draft.take("contacts", f"{key}, mm of air", **{pair: {"gap_mm": gap}})
-    liner, k = (
-        file.number("Liner_Thickness", usual=0.0),
-        file.number("Thermal_Conductivity_Slot_Liner", 1e-3, 500, 0.21),
-    )
+    liner = file.number("Liner_Thickness", usual=0.0)
+    k = file.number("Thermal_Conductivity_Slot_Liner", 1e-3, 500, 0.21)
     h = round(k / (METRES * liner), 2) if liner else None
     assumptions.contacts(draft, h, "Liner_Thickness, Thermal_Conductivity_Slot_Liner")
     _losses(draft, file, copper)

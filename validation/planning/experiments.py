@@ -47,10 +47,8 @@ def _planned(
     for experiment, plan in candidates.values():
         try:
             test = rivals.predicted_readings(models.best, plan)
-            parts, error = (
-                segments(evidence.network, [test], fit.values, columns),
-                rivals.widened_error(evidence, [test]),
-            )
+            parts = segments(evidence.network, [test], fit.values, columns)
+            error = rivals.widened_error(evidence, [test])
         except ThermoscopeError:  # a model that lacks what cools it runs away in a test that is longer than its own
             continue
         (more,) = gram(parts, fit.noise, p, error).values()

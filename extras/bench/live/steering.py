@@ -211,11 +211,9 @@ class Steering:
 
     def _of_what_shows(self, assessment: Assessment, p: float) -> float:
         """That nothing is missing among all that a set point may still show: the rest keeps the odds it came with."""
-        odds, elapsed, rest = (
-            dict(assessment.odds),
-            (self.time - self.begin) / MINUTE,
-            unresolved(assessment, self.bench),
-        )
+        odds = dict(assessment.odds)
+        elapsed = (self.time - self.begin) / MINUTE
+        rest = unresolved(assessment, self.bench)
         if elapsed < SOONEST_MIN or p < SURE * (1.0 - sum(odds.get(r.lead, 0.0) for r in rest)):
             return p
         if elapsed > AGAIN * self.searched_min:  # it costs as much as ten looks, and changes as slowly as the parts
