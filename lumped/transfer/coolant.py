@@ -19,11 +19,8 @@ def glycol(kind: str, mass_percent: float | None = None, volume_percent: float |
     """
     if (mass_percent is None) == (volume_percent is None):
         raise InputError("share of glycol not stated once", f"{kind} glycol", "mass_percent or volume_percent")
-    share = (
-        mass_percent / 100
-        if mass_percent is not None
-        else properties.mass_fraction_of((volume_percent or 0.0) / 100, kind)
-    )
+    by_volume = (volume_percent or 0.0) / 100
+    share = properties.mass_fraction_of(by_volume, kind) if mass_percent is None else mass_percent / 100
     if not 0.0 <= share <= 0.6:
         raise InputError(f"{100 * share:.3g} % by mass", f"{kind} glycol", "0 to 60 % by mass")
     mixture = {"ethylene": properties.ethylene_glycol, "propylene": properties.propylene_glycol}[kind]

@@ -43,11 +43,9 @@ def thin_film(law: laws.Law, rho: float, moving: Collection[str]) -> laws.Law:
         return replace(law, table=_thin_table(law.table, rho))
     if isinstance(law, laws.Wrapped):
         inner = replace(law, base=thin_film(law.base, rho, moving))
-        return (
-            replace(inner, temperature=_thin(law.temperature, rho))
-            if isinstance(inner, laws.WithTemperature)
-            else inner
-        )
+        if isinstance(inner, laws.WithTemperature):
+            return replace(inner, temperature=_thin(law.temperature, rho))
+        return inner
     if isinstance(law, laws.Fixed) and law.temperature == laws.CONSTANT:
         return laws.Scaled(law, rho**STILL)
     thin: laws.Law = law if law.temperature == laws.CONSTANT else laws.WithTemperature(law, _thin(law.temperature, rho))

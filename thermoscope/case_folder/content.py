@@ -46,9 +46,8 @@ def digest(*pieces: object) -> str:
 def case_key(folder: CaseWithFiles) -> str:
     """Of everything that decides: the case's files, its recordings, the machine, and what was calibrated."""
     settings, model = folder.settings, folder.case.model
-    sheets = {
-        sheet for e in settings.tests if e.sheet for sheet in Path(e.sheet).parent.glob("*.toml")
-    }  # and columns_of
+    # Those of columns_of as well
+    sheets = {sheet for e in settings.tests if e.sheet for sheet in Path(e.sheet).parent.glob("*.toml")}
     files = [settings.path / "case.toml", settings.network, *(e.file for e in settings.tests), *sorted(sheets)]
     texts = [Path(file).read_bytes() for file in files if file is not None and Path(file).is_file()]
     machine = () if folder.built is None else (folder.built.machine.sections, folder.built.mesh.points)

@@ -26,18 +26,10 @@ from validation.yardstick.terms import Term, needed_terms
 
 WINDOWS = (1 / 200, 1 / 40, 1 / 13, 2 / 9)  # of a test: short ones drown in noise, long ones in what happens in them
 LINE, SQUARE = (1.0, 0.0), (2.0, 0.0)
-POWERS = (
-    (),
-    (LINE,),
-    (LINE, SQUARE),
-)  # of an input that a link follows: not at all, as films in ducts do, as fans work
-SHAPES = (
-    ((0.5, 0.0),),
-    (SQUARE,),
-    ((1.0, 0.25),),
-    ((1.0, 0.5),),
-    ((1.0, 0.75),),
-)  # in place of a line: two regimes too
+# Of an input that a link follows: not at all, as films in ducts do, as fans work
+POWERS = ((), (LINE,), (LINE, SQUARE))
+# In place of a line: two regimes too
+SHAPES = (((0.5, 0.0),), (SQUARE,), ((1.0, 0.25),), ((1.0, 0.5),), ((1.0, 0.75),))
 RIDGES = (1e-9, 1e-6, 1e-4, 1e-2)  # over the diagonal: from none to one that shrinks all but what is plain
 THIRDS = 3  # stretches of the only test: two teach, one is predicted
 MOST_FOLDS = 12  # of many tests so many shares are left out in turn: each fit costs as much as that many tests
@@ -128,11 +120,8 @@ def yardstick(case: Case) -> Yardstick | None:
         return None
     folds, columns = prepared
     alone = _free_network(replace(case, tests=case.usable))
-    same = alone and (alone[1].inputs, alone[1].boundaries, *alone[1].steady) == (
-        columns.inputs,
-        columns.boundaries,
-        *columns.steady,
-    )
+    driven = columns.inputs, columns.boundaries, *columns.steady
+    same = alone and (alone[1].inputs, alone[1].boundaries, *alone[1].steady) == driven
     step = row_step(case.usable, columns)
     records = [r for fold in folds for r in fold]
     unseen = [table_record(t, columns, step) for t in case.tests if t.role == "hold-out"]

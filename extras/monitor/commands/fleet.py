@@ -103,11 +103,8 @@ def unequal_words(document: Mapping[str, Any]) -> str:
     other = [u["unit"] for u in document["units"] if u["rmse_K"] > FAR * max(usual, LEAST_K)]
     wide = [p for p in document["parameters"] if p["differs"] and p["spread_percent"] > WIDE]
     why = [f"{th.value_words(p['name'])} differs by {p['spread_percent']:.0f} %" for p in wide[:2]]
-    why += (
-        [f"the model leaves more than {FAR:g} times as much of {', '.join(other[:3])} as of the usual one"]
-        if other
-        else []
-    )
+    if other:
+        why.append(f"the model leaves more than {FAR:g} times as much of {', '.join(other[:3])} as of the usual one")
     return f"Are these equal motors? {'; '.join(why)}. Give each type a folder of its own." if why else ""
 
 

@@ -130,9 +130,8 @@ def _documents(folder: Folder, tell: Progress) -> Iterator[dict[str, Any]]:
     order, cache, looks_of = runs.by_interest(folder), cache_folder(), plugins("sections").get("looks")
     standing(folder.case)  # one network for both of the following
     with ThreadPoolExecutor() as pool:
-        looks = looks_of and looks_of.cached_looks(
-            machine, nodes, cache
-        )  # to make them takes longer than all else of the first picture
+        # To make them takes longer than all else of the first picture
+        looks = looks_of and looks_of.cached_looks(machine, nodes, cache)
         shape = pool.submit(machine_document, folder.case.name, nodes, conductivity, looks)
         comparison = pool.submit(runs.current_comparison, folder, order[0])
         run = runs.fields(folder.case, order[0], nodes, FRAMES)
