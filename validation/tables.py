@@ -153,11 +153,8 @@ def contradiction_table(contradiction: Document) -> Table:
 
 def doubts_table(doubts: Iterable[Document]) -> Table:
     """What the table of doubt adds up to at each record."""
-    return Table.of(
-        "Doubts of the model in sum (one sigma)",
-        doubts,
-        "sensor=channel | test=record | *sum (K)=sum_K | *counted (K)=counted_K | largest",
-    )
+    columns = "sensor=channel | test=record | *sum (K)=sum_K | *counted (K)=counted_K | largest"
+    return Table.of("Doubts of the model in sum (one sigma)", doubts, columns)
 
 
 def bases_table(hypotheses: Iterable[Document]) -> Table:

@@ -157,11 +157,8 @@ class Tabs:
             await tab.talk(socket)
             return socket
         if name == "viewer.html":
-            return web.Response(
-                text=tab.session.viewer_page,
-                content_type="text/html",
-                headers={"Content-Security-Policy": _page_policy("frame-ancestors 'self'")},
-            )
+            headers = {"Content-Security-Policy": _page_policy("frame-ancestors 'self'")}
+            return web.Response(text=tab.session.viewer_page, content_type="text/html", headers=headers)
         if name == "viewer-rest.json":
             return web.json_response(tab.session.viewer_rest)
         if name == "report.html":

@@ -57,11 +57,8 @@ def screening_summary(document: Mapping[str, Any]) -> th.Summary:
         for g in tables
         if g.rows
     )
-    return th.Summary(
-        f"{document['machine']}, {document['design']}: what moves most. {leading}.",
-        tables,
-        "--out DIR for plots; --json FILE",
-    )
+    sentence = f"{document['machine']}, {document['design']}: what moves most. {leading}."
+    return th.Summary(sentence, tables, "--out DIR for plots; --json FILE")
 
 
 def _effects(name: str, effects: Mapping[str, Any]) -> th.Table:
