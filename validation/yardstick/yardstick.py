@@ -120,8 +120,8 @@ def yardstick(case: Case) -> Yardstick | None:
         return None
     folds, columns = prepared
     alone = _free_network(replace(case, tests=case.usable))
-    driven = columns.inputs, columns.boundaries, *columns.steady
-    same = alone and (alone[1].inputs, alone[1].boundaries, *alone[1].steady) == driven
+    every = columns.inputs, columns.boundaries, *columns.steady
+    same = alone and (alone[1].inputs, alone[1].boundaries, *alone[1].steady) == every
     step = row_step(case.usable, columns)
     records = [r for fold in folds for r in fold]
     unseen = [table_record(t, columns, step) for t in case.tests if t.role == "hold-out"]
