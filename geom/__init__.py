@@ -39,9 +39,9 @@ if TYPE_CHECKING:
     )
     from geom.meshing.areas import PartRow as PartRow, part_table as part_table
     from geom.meshing.mesh import Contact as Contact, NamedMesh as NamedMesh, Patch as Patch
+    from geom.meshing.mesh import mesh_quality as mesh_quality
     from geom.meshing.mesher import COARSE as COARSE, FINE as FINE, build_mesh as build_mesh
     from geom.meshing.meshio_io import read_vtu as read_vtu, write_vtu as write_vtu
-    from geom.meshing.quality import mesh_quality as mesh_quality
     from geom.solids.cad import export_cad as export_cad
     from geom.solids.surfaces import check_cad as check_cad
 

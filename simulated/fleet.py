@@ -10,6 +10,7 @@ fouled much more, in one the joint of stator and housing is loose. No code of th
 from __future__ import annotations
 
 import argparse
+import shutil
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -24,87 +25,6 @@ SIGMA_K = 0.15
 # cells: slot winding, two end windings, four rings of the stator, two of the housing, rotor, water
 C = np.array([1500.0, 700.0, 700.0, 1600.0, 1600.0, 1600.0, 1600.0, 2200.0, 2200.0, 5000.0, 900.0])
 RING = 260.0  # W/K from ring to ring of the stator
-
-CASE = """[case]
-name = "jacket-fleet"
-description = "Simulated fleet of water-cooled motors; declared three-node network"
-network = "network.toml"
-sample_s = 20
-
-[tests.reference]
-role = "calibrate"
-"""
-NETWORK = """[network]
-name = "jacket-fleet"
-boundaries = ["coolant", "ambient"]
-[boundaries.coolant]
-role = "coolant"
-[boundaries.ambient]
-role = "ambient"
-
-[nodes.winding]
-C_J_K = 2900
-prior_sd = 0.1
-[nodes.stator]
-C_J_K = 6400
-prior_sd = 0.1
-[nodes.housing]
-C_J_K = 4400
-prior_sd = 0.1
-
-[links.slots]
-between = ["winding", "stator"]
-G_W_K = 45
-prior_sd = 0.3
-[links.joint]
-between = ["stator", "housing"]
-G_W_K = 60
-prior_sd = 0.5
-[links.jacket]
-between = ["housing", "coolant"]
-G_W_K = 90
-prior_sd = 0.5
-[links.room]
-between = ["housing", "ambient"]
-G_W_K = 2
-prior_sd = 0.3
-
-[losses.copper]
-at = "winding"
-kind = "copper"
-R20_ohm = 0.02
-currents = ["current_A"]
-prior_sd = 0.05
-[losses.iron]
-at = "stator"
-kind = "iron"
-eddy_W = 220
-hysteresis_W = 90
-speed_at = 3000
-prior_sd = 0.2
-"""
-SHEET = """[test]
-time = "time_s"
-description = "simulated"
-
-[columns.current]
-quantity = "current"
-unit = "A"
-[columns.speed]
-quantity = "speed"
-unit = "rpm"
-[columns.water]
-quantity = "temperature"
-unit = "degC"
-place = "coolant"
-[columns.room]
-quantity = "temperature"
-unit = "degC"
-place = "ambient"
-""" + "".join(
-    f'[columns.{name}]\nquantity = "temperature"\nunit = "degC"\nplace = "{name}"\nsigma_K = 0.3\n'
-    for name in ("winding", "stator", "housing")
-)
 HEADER = "time_s,current,speed,water,room,winding,stator,housing"
 
 
@@ -190,8 +110,8 @@ def written(
     case, fleet = out / "case", out / "fleet"
     (case / "tests").mkdir(parents=True)
     fleet.mkdir()
-    for name, text in (("case.toml", CASE), ("network.toml", NETWORK), ("tests/reference.toml", SHEET)):
-        (case / name).write_text(text)
+    for name, file in (("case", "case.toml"), ("network", "network.toml"), ("sheet", "tests/reference.toml")):
+        shutil.copyfile(Path(__file__).with_name(f"fleet.{name}.toml"), case / file)
     for month in months:
         years = int(month[:4]) - int(months[0][:4]) + (int(month[5:]) - int(months[0][5:])) / 12.0
         loads, y = warmed(Motors(usual.jacket * np.exp(DRIFT_YEAR * years), usual.joint, usual.resistance), rng)

@@ -19,9 +19,7 @@ from numpy.typing import NDArray
 from simulated.physics.draws import Draws
 from simulated.physics.plant import State
 from simulated.physics.surfaces import Conditions
-from simulated.pm import files as pm_files
-from simulated.pm import meters as pm_meters
-from simulated.pm import plant as pm_plant
+from simulated.pm import files as pm_files, meters as pm_meters, plant as pm_plant
 from simulated.pm.plant import PmLosses, PmPlant
 
 Array = NDArray[np.float64]

@@ -82,10 +82,8 @@ def _test_of(name: str, record: Record) -> Test:
     inputs = {n: u for n, u in inputs.items() if n not in (CLOCK, f"{RUNNING}{name}")}
     air = {n: np.broadcast_to(np.asarray(u, float), nt) for n, u in record.boundaries.items()}
     # The times, where one is given twice (a jump) a microsecond apart: rates of change are taken of them
-    time, source = (
-        record.time + JUMP_S * np.cumsum(np.diff(record.time, prepend=-np.inf) == 0.0),
-        record.inputs.source if isinstance(record.inputs, Signals) else None,
-    )
+    time = record.time + JUMP_S * np.cumsum(np.diff(record.time, prepend=-np.inf) == 0.0)
+    source = record.inputs.source if isinstance(record.inputs, Signals) else None
     fine = Recorded(source.time, {n: source.signals[n] for n in inputs}, time, inputs) if source else None
     return Test(name, "hold-out", time, inputs, air, (), record.initial, recorded=fine)
 

@@ -18,16 +18,9 @@ from validation.comparison.linearisation import rmse
 from validation.consistency import checks
 from validation.effects.above import KIND
 from validation.effects.base import Effect
+from validation.inference import decide, refit, say
 from validation.inference.conditions import check_names, conditions, end_reach, law_errors
 from validation.inference.contradiction import contradiction
-from validation.inference.decide import (
-    Decision,
-    Posterior,
-    clear_decision,
-    consistent_decision,
-    decide,
-    steady_decision,
-)
 from validation.inference.events import retimed
 from validation.inference.evidence import (
     Evidence,
@@ -49,34 +42,7 @@ from validation.inference.hypotheses import Members, Weighed, catalogue_priors, 
 from validation.inference.low_fidelity import fidelity_error, low_fidelity_case
 from validation.inference.missing_heat import MissingHeat, Scan, scan_heat
 from validation.inference.question import best_question, with_answers
-from validation.inference.refit import (
-    NO_FITS,
-    WarmFits,
-    fine_refit,
-    fine_refits,
-    group_refits,
-    larger_sets,
-    refit_noise,
-    refitted,
-    weighty_refits,
-)
 from validation.inference.result import Diagnosis, Remainder
-from validation.inference.say import (
-    ROWS,
-    candidate_rows,
-    confusion,
-    explanations,
-    final_verdict,
-    hidden_effects,
-    odds,
-    possible_events,
-    prior_pulls,
-    record_doubts,
-    remainder,
-    sentence,
-    unseen_words,
-    unsteady_words,
-)
 from validation.noise import Noise
 from validation.planning.experiments import next_tests
 from validation.planning.rivals import CompetingModels
@@ -127,17 +93,19 @@ def diagnose(
     bases = base_hypotheses(training, progress)
     wrong = wrong_bases(bases)
 
-    def result(posterior: Posterior, preliminary: bool) -> Diagnosis:
+    def result(posterior: decide.Posterior, preliminary: bool) -> Diagnosis:
         small = fidelity_error(whole, case, posterior)
         most = {c: budget.get(c, 0.0) + small.get(c, 0.0) for c in {**budget, **small}}
-        choice = steady_decision(posterior, lambda p: clear_decision(p, decide(p.evidence, p.hypotheses), most))
-        left, first = remainder(case, posterior, choice, posterior.single), choice.groups
+        choice = decide.steady_decision(
+            posterior, lambda p: decide.clear_decision(p, decide.decide(p.evidence, p.hypotheses), most)
+        )
+        left, first = say.remainder(case, posterior, choice, posterior.single), choice.groups
         if not preliminary:
-            choice = consistent_decision(choice, checks(case, posterior, choice, most, left))
+            choice = decide.consistent_decision(choice, checks(case, posterior, choice, most, left))
         if wrong:  # nothing else is accused of what the base does
-            choice = Decision("data", (), choice.sure)
+            choice = decide.Decision("data", (), choice.sure)
         if choice.groups != first:
-            left = remainder(case, posterior, choice, posterior.single)
+            left = say.remainder(case, posterior, choice, posterior.single)
         faults = PlainFaults(tuple(broken), tuple(wrong))
         answer = tabulate(case, posterior, choice, faults, bases, left, plan and not preliminary, scope, preliminary)
         return replace(answer, small_network_K=small)
@@ -153,8 +121,8 @@ def infer(
     progress: Progress = no_progress,
     scope: Scope = EVERYTHING,
     quick: bool = False,
-    report: Callable[[Posterior], None] = untold,
-) -> Posterior:
+    report: Callable[[decide.Posterior], None] = untold,
+) -> decide.Posterior:
     """Calibrate, score, weigh every hypothesis, refit what carries weight.
 
     Parameters: as of `diagnose`; `report` is told the first odds. Returns: every hypothesis with its log evidence over
@@ -187,19 +155,19 @@ def infer(
     larger = joined(evidence, more, values)
     evidence = converged(sharpened(larger, range(first, first + len(selection))))
     hypotheses, heat = weigh(case, evidence, scan, fit.noise, progress)
-    first_odds = Posterior(evidence, tuple(relative_evidence(hypotheses)), tuple(heat), against)
+    first_odds = decide.Posterior(evidence, tuple(relative_evidence(hypotheses)), tuple(heat), against)
     report(first_odds)
     if quick:
         return first_odds
     # the noise and the ends of events were set by tangents: once refits say them better, all is weighed anew
-    update, noise = retimed(evidence, hypotheses, end_reach(scan), fine_refit), refit_noise(hypotheses)
+    update, noise = retimed(evidence, hypotheses, end_reach(scan), refit.fine_refit), refit.refit_noise(hypotheses)
     if noise is not None or update is not evidence:
         evidence = converged(recalibrated(update, noise or update.fit.noise))
         warm_fits = {h.members: h.fit for h in hypotheses if h.fit and h.members}
-        again = weighty_refits(hypotheses)
+        again = refit.weighty_refits(hypotheses)
         hypotheses, heat = weigh(case, evidence, scan, fit.noise, progress, warm_fits, again)
-    every = larger_sets(case, evidence, fine_refits(evidence, hypotheses), progress)
-    return Posterior(evidence, tuple(relative_evidence(every)), tuple(heat), against)
+    every = refit.larger_sets(case, evidence, refit.fine_refits(evidence, hypotheses), progress)
+    return decide.Posterior(evidence, tuple(relative_evidence(every)), tuple(heat), against)
 
 
 def weigh(
@@ -208,7 +176,7 @@ def weigh(
     scan: Scan,
     loudest: Noise,
     progress: Progress,
-    warm_fits: WarmFits = NO_FITS,
+    warm_fits: refit.WarmFits = refit.NO_FITS,
     again: Collection[Members] = (),
 ) -> tuple[list[Weighed], list[MissingHeat]]:
     """All hypotheses, those that carry weight refitted, and where heat is missing.
@@ -223,13 +191,13 @@ def weigh(
     every = [*ones, *pairs(evidence, ones), *(Weighed((), w.place, prior[w.place], w.log_bayes) for w in heat)]
     larger = LoudNoise.create(evidence, loud)
     evidence, every = replace(evidence, loud=larger), averaged_noise(every, loud, larger.over)
-    return refitted(evidence, with_answers(evidence, every, case.answers), progress, warm_fits, again), heat
+    return refit.refitted(evidence, with_answers(evidence, every, case.answers), progress, warm_fits, again), heat
 
 
 def tabulate(
     case: Case,
-    posterior: Posterior,
-    choice: Decision,
+    posterior: decide.Posterior,
+    choice: decide.Decision,
     broken: PlainFaults,
     bases: Sequence[BaseDeviance],
     left: Sequence[Remainder],
@@ -238,23 +206,23 @@ def tabulate(
     preliminary: bool = False,
 ) -> Diagnosis:
     """The whole answer; the held-out tests of `case` are predicted here, after everything is decided."""
-    e, members = posterior.evidence, [k for g in choice.groups for k in g][:ROWS]
-    single = group_refits(e, posterior.single, members)
-    pulls = prior_pulls(e.fit)
-    verdict = final_verdict(choice.verdict, posterior, choice, pulls, broken)
-    rows = candidate_rows(case, posterior, choice, verdict, single)
+    e, members = posterior.evidence, [k for g in choice.groups for k in g][: say.ROWS]
+    single = refit.group_refits(e, posterior.single, members)
+    pulls = say.prior_pulls(e.fit)
+    verdict = say.final_verdict(choice.verdict, posterior, choice, pulls, broken)
+    rows = say.candidate_rows(case, posterior, choice, verdict, single)
     rivals = competing_models(e, choice, single) if plan and verdict in ("group", "several") else None
     groups = tuple(tuple(e.names[k] for k in g) for g in choice.groups)
     tests, sensors = (next_tests(e, rivals), next_sensors(e, rivals)) if rivals else ((), ())
-    words = sentence(verdict, posterior, choice, rows, pulls, broken, left)
-    words += unsteady_words(posterior, choice) + unseen_words(e.fit)
+    words = say.sentence(verdict, posterior, choice, rows, pulls, broken, left)
+    words += say.unsteady_words(posterior, choice) + say.unseen_words(e.fit)
     return Diagnosis(
         verdict=verdict,
         words="; ".join(filter(None, [PRELIMINARY * preliminary, scope.words(case.odds), words])),
         named=tuple(g[0] for g in groups),
         groups=groups,
         candidates=rows,
-        cannot_see=hidden_effects(e),
+        cannot_see=say.hidden_effects(e),
         where=posterior.heat,
         next_tests=tuple(tests),
         next_sensors=tuple(sensors),
@@ -262,14 +230,14 @@ def tabulate(
         floor_K=float(np.sqrt(np.mean([s.weight**2 for s in e.fit.parts]))),
         threshold=float(np.min(thresholds(e))),
         pulls=pulls,
-        cosine=confusion(e, [c.effect for c in rows[:CONFUSIONS]]),
+        cosine=say.confusion(e, [c.effect for c in rows[:CONFUSIONS]]),
         bases=tuple(bases),
-        odds=odds(posterior, broken.names),
-        explanations=explanations(posterior),
+        odds=say.odds(posterior, broken.names),
+        explanations=say.explanations(posterior),
         p_nothing=0.0 if broken.names else 1.0 - choice.sure,
-        events=possible_events(posterior),
+        events=say.possible_events(posterior),
         remainder=tuple(left),
-        doubts=record_doubts(e.fit),
+        doubts=say.record_doubts(e.fit),
         contradiction=posterior.against,
         question=best_question(posterior),
         checks=choice.checks,
@@ -280,7 +248,7 @@ def tabulate(
     )
 
 
-def competing_models(e: Evidence, choice: Decision, single: Mapping[int, Weighed]) -> CompetingModels | None:
+def competing_models(e: Evidence, choice: decide.Decision, single: Mapping[int, Weighed]) -> CompetingModels | None:
     """The first group that could not be separated, with the refits of its leading members."""
     group = next((g for g in choice.groups if len(g) > 1), ())
     few = [k for k in group if not e.effects[k].whole][:RIVALS]

@@ -65,10 +65,8 @@ def roles_table(roles: Iterable[Document]) -> Table:
 
 def diagnosis_tables(document: Document) -> tuple[Table, ...]:
     """Bases, explanations, candidates, events, contradictions, what would decide, and what cannot be seen."""
-    candidates, events = (
-        candidates_table(weighty_candidates(document["candidates"])),
-        events_table(document.get("events", [])),
-    )
+    candidates = candidates_table(weighty_candidates(document["candidates"]))
+    events = events_table(document.get("events", []))
     every = (
         bases_table(document.get("bases", [])),
         explanations_table(document.get("explanations", [])),
@@ -155,11 +153,8 @@ def contradiction_table(contradiction: Document) -> Table:
 
 def doubts_table(doubts: Iterable[Document]) -> Table:
     """What the table of doubt adds up to at each record."""
-    return Table.of(
-        "Doubts of the model in sum (one sigma)",
-        doubts,
-        "sensor=channel | test=record | *sum (K)=sum_K | *counted (K)=counted_K | largest",
-    )
+    columns = "sensor=channel | test=record | *sum (K)=sum_K | *counted (K)=counted_K | largest"
+    return Table.of("Doubts of the model in sum (one sigma)", doubts, columns)
 
 
 def bases_table(hypotheses: Iterable[Document]) -> Table:

@@ -16,15 +16,8 @@ if TYPE_CHECKING:
     from matplotlib.colors import LinearSegmentedColormap
 
 # Okabe & Ito 2008, the colour-blind safe set
-BLUE, ORANGE, GREEN, VERMILION, SKY, PURPLE, YELLOW = (
-    "#0072B2",
-    "#E69F00",
-    "#009E73",
-    "#D55E00",
-    "#56B4E9",
-    "#CC79A7",
-    "#F0E442",
-)
+BLUE, ORANGE, GREEN, VERMILION = "#0072B2", "#E69F00", "#009E73", "#D55E00"
+SKY, PURPLE, YELLOW = "#56B4E9", "#CC79A7", "#F0E442"
 # of Okabe & Ito's hues, dark enough for white letters on them (contrast 4.5 and more, WCAG 2.2 AA)
 VERDICT = {"within": "#00795A", "hot": "#B34700", "cold": BLUE, "unknown": "#5B6470"}
 

@@ -167,8 +167,7 @@ def ngsolve_with(preconditioner: str) -> Callable[[Problem], tuple[Laps, float]]
 
 def _netgen(points: np.ndarray, tets: np.ndarray, facets: dict[str, np.ndarray]):  # type: ignore[no-untyped-def]
     import ngsolve as ng
-    from netgen.meshing import FaceDescriptor
-    from netgen.meshing import Mesh as NetgenMesh
+    from netgen.meshing import FaceDescriptor, Mesh as NetgenMesh
 
     out = NetgenMesh(dim=3)
     out.AddPoints(np.ascontiguousarray(points))

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from extras.export.flat import Flat, flat
 from extras.export.model import Model, Output, Signal
+from extras.export.products import Function, Mapped, Positive, Powered, Straight, Sum
 from thermoscope import plugin as th
 
 RUNTIME = Path(__file__).resolve().parent / "runtime"
@@ -84,7 +85,13 @@ def data(model: Model) -> str:
         ints("PLACE", T.part[:, th.PLACE]),
         ints("SEEN", [-1 if of is None else signals.index(of) for of, _ in model.sizes]),
         reals("SEEN_SIZE", [usual for _, usual in model.sizes]),
-        *_functions(F),
+        ints("PRODUCT_START", F.product_start),
+        reals("PRODUCT", F.coefficient),
+        ints("FUNCTION_START", F.function_start),
+        _matrix("FUNCTION", F.function, "int"),
+        _matrix("FUNCTION_A", F.parameters),
+        reals("FUNCTION_X", F.x),
+        reals("FUNCTION_Y", F.y),
         ints("OUTPUT_START", th.starts([r.index for r in rows])),
         ints("OUTPUT_AT", joined(r.index for r in rows)),
         reals("OUTPUT_WEIGHT", joined(r.weights for r in rows)),
@@ -95,18 +102,6 @@ def data(model: Model) -> str:
         f"#define FULL_UNITS ((thermal_real){th.FULL_UNITS})",
     ]
     return "\n".join(["/* The numbers of the model; see thermal_network_sizes.h. */", *parts, ""])
-
-
-def _functions(F: Flat) -> list[str]:
-    return [
-        ints("PRODUCT_START", F.product_start),
-        reals("PRODUCT", F.coefficient),
-        ints("FUNCTION_START", F.function_start),
-        _matrix("FUNCTION", F.function, "int"),
-        _matrix("FUNCTION_A", F.parameters),
-        reals("FUNCTION_X", F.x),
-        reals("FUNCTION_Y", F.y),
-    ]
 
 
 def joined(parts: Iterable[np.ndarray]) -> np.ndarray:
@@ -175,3 +170,68 @@ def _cost(model: Model) -> Iterator[str]:
     yield f"State: {state_bytes(model)} bytes. One inner step: about {step_operations(model)} multiplications;"
     yield "a call takes one, more where inputs or temperatures turn fast (error of a step: "
     yield f"{model.tolerance[0]:g} K and {model.tolerance[1]:g} of the range of temperatures)."
+
+
+POWERED, STRAIGHT, POSITIVE, TABULATED, MAPPED = range(5)
+
+
+@dataclass(frozen=True)
+class Flat:
+    """Sums of products as flat arrays, for languages without objects.
+
+    Products product_start[e]:product_start[e + 1] make up factor e, functions function_start[k]:... product k.
+
+    function (nf, 8) : kind, input, other input, first of x, points along x1 and x2, first of y, whether of the size
+    parameters (nf, 2) : (at, exponent), (offset, slope) or (way, 0);  x, y : of all tables
+    """
+
+    product_start: th.Ints
+    coefficient: th.Array
+    function_start: th.Ints
+    function: th.Ints
+    parameters: th.Array
+    x: th.Array
+    y: th.Array
+
+
+def flat(factors: Sequence[Sum], signals: Sequence[str]) -> Flat:
+    """All factors, with inputs by their place among the signals."""
+    products = [p for total in factors for p in total]
+    functions = [f for p in products for f in p.functions]
+    xs = [_points(f)[0] for f in functions]
+    ys = [_points(f)[1] for f in functions]
+    at_x, at_y = th.starts(xs), th.starts(ys)
+    table = [_integers(f, signals, at_x[i], at_y[i]) for i, f in enumerate(functions)]
+    return Flat(
+        th.starts(factors),
+        np.array([p.coefficient for p in products]),
+        th.starts([p.functions for p in products]),
+        np.array(table, np.int64).reshape(-1, 8),
+        np.array([_numbers(f) for f in functions], float).reshape(-1, 2),
+        np.concatenate([np.empty(0), *xs]),
+        np.concatenate([np.empty(0), *ys]),
+    )
+
+
+def _points(f: Function) -> tuple[tuple[float, ...], tuple[float, ...]]:
+    if isinstance(f, Powered | Straight | Positive):
+        return (), ()
+    return ((*f.x1, *f.x2) if isinstance(f, Mapped) else f.x), f.y
+
+
+def _integers(f: Function, signals: Sequence[str], x: int, y: int) -> list[int]:
+    of = signals.index(f.input)
+    if isinstance(f, Mapped):
+        return [MAPPED, of, signals.index(f.other), x, len(f.x1), len(f.x2), y, f.size]
+    if isinstance(f, Powered | Straight | Positive):
+        kind = POWERED if isinstance(f, Powered) else STRAIGHT if isinstance(f, Straight) else POSITIVE
+        return [kind, of, 0, 0, 0, 0, 0, 0]
+    return [TABULATED, of, 0, x, len(f.x), 0, y, f.size]
+
+
+def _numbers(f: Function) -> tuple[float, float]:
+    if isinstance(f, Powered):
+        return f.at, f.exponent
+    if isinstance(f, Straight):
+        return f.offset, f.slope
+    return (f.way, 0.0) if isinstance(f, Positive) else (0.0, 0.0)

@@ -13,8 +13,7 @@ import numpy as np
 from extras.export.c_code import RUNTIME, c_files
 from extras.export.compilers import here, library
 from extras.export.model import Model
-from thermoscope import Network, Record, ThermoscopeError, simulate
-from thermoscope import plugin as th
+from thermoscope import Network, Record, ThermoscopeError, plugin as th, simulate
 
 AGREES_K = 0.05  # largest difference to the simulation
 

@@ -16,8 +16,7 @@ import numpy as np
 from extras.export.c_code import RUNTIME, c_files, heading
 from extras.export.compilers import PLATFORMS, Platform, here, library
 from extras.export.model import Model, Signal
-from thermoscope import MissingDependency
-from thermoscope import plugin as th
+from thermoscope import MissingDependency, plugin as th
 
 STILL = (1980, 1, 1, 0, 0, 0)  # the date of every member: equal models give equal files
 TOOL = "thermoscope"

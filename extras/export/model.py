@@ -10,8 +10,7 @@ from numpy.typing import NDArray
 
 from extras.export.products import Product, Sum
 from extras.export.tables import Ranges, factors
-from thermoscope import InputError, Network
-from thermoscope import plugin as th
+from thermoscope import InputError, Network, plugin as th
 
 USUAL_C = 20.0  # where a run starts unless it is told
 WIDER = 1.5  # tables of unknown laws reach that much beyond what the fitted tests recorded
@@ -154,11 +153,8 @@ def unit_of(network: Network, name: str) -> str:
 def outputs(network: Network, folder: th.Folder, limits: Mapping[str, float]) -> tuple[Output, ...]:
     """All named temperatures with their limits and, where a sensor sits, its error when the model was fitted."""
     case = folder.case
-    of_sensors = (
-        th.errors(case).sensor_errors
-        if case.model.reference is None and case.tests
-        else th.standing_reference(case).errors
-    )
+    free = case.model.reference is None and case.tests
+    of_sensors = th.errors(case).sensor_errors if free else th.standing_reference(case).errors
     error_of = {f"sensor {name}": error for name, error in of_sensors.items()}
     rows = th.mean_rows(network) | {f"sensor {n}": c.row for n, c in sorted(th.sensors(folder).items())}
     for place in limits:

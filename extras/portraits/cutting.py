@@ -18,7 +18,9 @@ Plane = tuple[th.Array, th.Array]  # a point (m) and the normal of the side that
 
 def cut_body(body: Body, wedge: th.Wedge | None) -> tuple[pyvista.PolyData, pyvista.PolyData | None] | None:
     """Surface and caps of a body without a wedge, no caps where it is whole; None where nothing stays."""
-    mesh = _mesh(body)
+    import pyvista
+
+    mesh = pyvista.PolyData.from_regular_faces(body.shape.points, body.shape.triangles)  # type: ignore[arg-type]
     if wedge is None:
         return _smooth(mesh), None
     if body.whole:
@@ -37,12 +39,6 @@ def cut_body(body: Body, wedge: th.Wedge | None) -> tuple[pyvista.PolyData, pyvi
     caps = [cap for planes in sides if (cap := _caps(mesh, planes)) is not None]
     shell = _merged([s for s in shells if s.n_cells])
     return None if shell is None else (shell, _merged(caps))
-
-
-def _mesh(body: Body) -> pyvista.PolyData:
-    import pyvista
-
-    return pyvista.PolyData.from_regular_faces(body.shape.points, body.shape.triangles)  # type: ignore[arg-type]
 
 
 def _smooth(mesh: pyvista.PolyData) -> pyvista.PolyData:

@@ -35,11 +35,8 @@ def shield(o: Outlines, part: th.Part) -> list[Body]:
     hidden = 1.03 * max((o.reach(p) for p in outside), default=0.0)
     cover = _cover(o, part, seat, thick, side).moved((0.0, 0.0, face))
     start = max(1.45 * seat, hidden)
-    ribs = (
-        []
-        if start > 0.75 * rim
-        else [_rib(start, 0.9 * rim, thick, side, k).moved((0.0, 0.0, face)) for k in range(RIBS)]
-    )
+    count = 0 if start > 0.75 * rim else RIBS
+    ribs = [_rib(start, 0.9 * rim, thick, side, k).moved((0.0, 0.0, face)) for k in range(count)]
     thread = float(np.clip(0.035 * rim, 0.003, 0.010))
     at = [(2 * np.pi * (k + 0.5) / BOLTS, 0.94 * rim) for k in range(BOLTS)]
     bolts = [bolt(thread).on_end(angle, radius, face, side) for angle, radius in at if radius > hidden]

@@ -14,8 +14,7 @@ from scipy.optimize import brentq
 
 from extras.rating.operation import Operation
 from extras.rating.points import RUNAWAY_C, S3, S6, Model
-from thermoscope import InputError
-from thermoscope import plugin as th
+from thermoscope import InputError, plugin as th
 
 LARGEST = 50.0  # of the reference load; beyond, no temperature limits
 CLOSE = 1e-3  # of a load: a tenth of what inputs are known to

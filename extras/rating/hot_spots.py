@@ -7,8 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from thermoscope import Network
-from thermoscope import plugin as th
+from thermoscope import Network, plugin as th
 
 MEAN = ".mean"  # after the name of a place: its mean instead of its hottest point
 CHUNK = 64  # instants that are looked at together: a part of 10,000 points then takes 5 MB

@@ -12,8 +12,7 @@ from itertools import product
 
 import numpy as np
 
-from thermoscope import InputError, Network
-from thermoscope import plugin as th
+from thermoscope import InputError, Network, plugin as th
 
 BALANCED = 0.02  # of the input power: what losses and powers may disagree by
 TORQUE, SPEED = "torque_Nm", "speed_rpm"

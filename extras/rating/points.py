@@ -9,8 +9,7 @@ import numpy as np
 
 from extras.rating.hot_spots import HotSpots
 from extras.rating.operation import Operation
-from thermoscope import Network, Record, ThermoscopeError, simulate, steady
-from thermoscope import plugin as th
+from thermoscope import Network, Record, ThermoscopeError, plugin as th, simulate, steady
 
 TOGETHER, ROUNDS = 2, 40  # periods that run as one record; of these at most
 REPEATS_K = 0.02  # change per period below which a duty repeats itself

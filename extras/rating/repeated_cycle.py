@@ -10,8 +10,7 @@ import numpy as np
 from extras.rating.envelope import reached
 from extras.rating.operation import Operation
 from extras.rating.points import REPEATS_K, Model
-from thermoscope import InputError, Record, ThermoscopeError
-from thermoscope import plugin as th
+from thermoscope import InputError, Record, ThermoscopeError, plugin as th
 
 LONGEST_S = 7 * 86400.0  # a week of the same cycle; heavier machines do not settle slower
 

@@ -12,8 +12,7 @@ from extras.rating.hot_spots import MEAN, hot_spots
 from extras.rating.loss_grid import SPEED, TORQUE, loss_grid, with_losses
 from extras.rating.operation import Operation, air_boundaries, coolant_boundaries, operation
 from extras.rating.points import Model
-from thermoscope import InputError, Network
-from thermoscope import plugin as th
+from thermoscope import InputError, Network, plugin as th
 
 AMBIENT_C = 40.0  # IEC 60034-1: what a machine is rated in where nothing else is said
 INLET_C = 20.0  # what [cooling] takes where it does not say

@@ -12,8 +12,7 @@ from extras.rating.envelope import TIMES, LimitError, Rating, rated
 from extras.rating.hot_spots import hot_spots
 from extras.rating.operation import Operation
 from extras.rating.request import Rated
-from thermoscope import Record, simulate, steady
-from thermoscope import plugin as th
+from thermoscope import Record, plugin as th, simulate, steady
 
 STEADY_TIME_CONSTANTS = 20.0  # time constants
 
@@ -38,14 +37,10 @@ def derated(
     folder: th.Folder, it: Rated, old: Rated | None, load: float, of: th.ParameterPosterior | None
 ) -> list[dict[str, Any]]:
     """Shares of the continuous rating `load` in other surroundings; before: of the same, by the earlier model."""
-    earlier = (
-        {}
-        if old is None
-        else {
-            (d.where.of, d.where.value): d.load * old.op.inputs[old.op.main]
-            for d in deratings(old.model, old.op, old.limits)
-        }
-    )
+    earlier = {}
+    if old is not None:
+        for d in deratings(old.model, old.op, old.limits):
+            earlier[d.where.of, d.where.value] = d.load * old.op.inputs[old.op.main]
     whole, out = load * it.op.inputs[it.op.main], []
     for d in deratings(it.model, it.op, it.limits):
         there = None if of is None else replace(of, network=d.where.network(of.network))

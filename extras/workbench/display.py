@@ -5,8 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Any
 
-from extras.workbench import revisions as ledger
-from extras.workbench import tables as rows
+from extras.workbench import revisions as ledger, tables as rows
 from extras.workbench.appearance import Appearance
 from extras.workbench.live import state_and_picture
 from extras.workbench.machines import Bench
@@ -14,42 +13,16 @@ from thermoscope import plugin as th
 
 CONFUSED = 8  # names that a row holds
 NOTHING: dict[str, Any] = {"data": [], "layout": {}}
-START: dict[str, Any] = {
-    "busy": False,
-    "comparing": False,
+START: dict[str, Any] = {  # of a tab, before anything is known
+    **dict.fromkeys(("busy", "comparing", "dark", "can_undo", "has_confusion"), False),
+    **dict.fromkeys(("error", "report", "viewer", "viewer_rest", "preparing", "test", "sensor", "plotly"), ""),
+    **dict.fromkeys(("rms", "floor", "dragged", "made"), ""),
+    **dict.fromkeys(("outcome", "verdict", "live", "drop"), None),
+    **dict.fromkeys(("curve", "confusion", "live_curve"), NOTHING),
+    **{name: [] for name in ("tests", "test_names", "sensors", "effects", "steps", "candidates", "imported")},
+    **dict.fromkeys(("plots", "revision"), 0),
     "job": {"title": "", "message": "", "percent": None},
-    "error": "",
-    "outcome": None,
-    "report": "",
-    "viewer": "",
-    "viewer_rest": "",
-    "preparing": "",
     "limits": {},
-    "tests": [],
-    "test": "",
-    "test_names": [],
-    "sensors": [],
-    "sensor": "",
-    "curve": NOTHING,
-    "dark": False,
-    "plotly": "",
-    "plots": 0,
-    "effects": [],
-    "revision": 0,
-    "steps": [],
-    "can_undo": False,
-    "verdict": None,
-    "candidates": [],
-    "confusion": NOTHING,
-    "has_confusion": False,
-    "rms": "",
-    "floor": "",
-    "live": None,
-    "live_curve": NOTHING,
-    "drop": None,
-    "dragged": "",
-    "made": "",
-    "imported": [],
 }
 
 

@@ -12,8 +12,7 @@ from uuid import uuid4
 
 from aiohttp import BodyPartReader, MultipartReader, web
 
-from thermoscope import InputError, Network
-from thermoscope import plugin as th
+from thermoscope import InputError, Network, plugin as th
 
 DROP_PREFIX = "thermoscope-drop-"
 DROP_FOLDER = rf"{re.escape(tempfile.gettempdir())}.{DROP_PREFIX}\w+.[0-9a-f]{{32}}."  # of a file while it is read

@@ -8,8 +8,7 @@ from importlib.resources import files
 from typing import Any
 
 from trame.ui.vuetify3 import VAppLayout
-from trame.widgets import client
-from trame.widgets import trame as extra
+from trame.widgets import client, trame as extra
 from trame_plotly import module as plotly
 
 from extras.workbench.session import Session, started

@@ -17,8 +17,7 @@ from extras.workbench.jobs import FailedError, StoppedError, prepare
 from extras.workbench.machines import Bench, Machines
 from extras.workbench.steps import comparing_job, drawing_job
 from extras.workbench.tabs import Tabs
-from thermoscope import InputError
-from thermoscope import plugin as th
+from thermoscope import InputError, plugin as th
 
 SWEEP_S = 30.0  # between looks for idle tabs
 SHORTEST = 16  # characters: 64 bits where they are hexadecimal

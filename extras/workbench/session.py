@@ -9,15 +9,13 @@ from collections.abc import Callable, Coroutine, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
-from extras.workbench import live, steps
-from extras.workbench import revisions as ledger
+from extras.workbench import live, revisions as ledger, steps
 from extras.workbench.appearance import Appearance
 from extras.workbench.display import Display
 from extras.workbench.dropped import DROP_FOLDER, Dropped
 from extras.workbench.jobs import FailedError, Job, StoppedError
 from extras.workbench.machines import Bench, Drawing
-from thermoscope import InputError, ThermoscopeError
-from thermoscope import plugin as th
+from thermoscope import InputError, ThermoscopeError, plugin as th
 
 REMEMBERED = 8  # revisions whose comparison is at hand
 TITLES = {"add": "Adding", "remove": "Taking out", "calibrate": "Calibrating"}

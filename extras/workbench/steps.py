@@ -75,11 +75,8 @@ def stepped(
     revision = th.recorded(result, th.evidence(folder, result))
     after = at(folder, folder.history.and_then(revision))
     look = appearance(after, tell)
-    return (
-        revision,
-        {**result.document(), "found": th.finding_words(after, look.errors) if action == "add" else ""},
-        look,
-    )
+    words = th.finding_words(after, look.errors) if action == "add" else ""
+    return revision, {**result.document(), "found": words}, look
 
 
 def recordings(files: Sequence[Path], network: Network, tell: th.Progress) -> Dropped:

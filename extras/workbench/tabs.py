@@ -87,16 +87,14 @@ class Tab:
         server: Any = get_server(name, client_type="vue3")
         self.session = Session(bench, server, turn_to)
         draw(self.session)
-        self._server, self._task = (
-            server,
-            server.start(
-                backend="generic",
-                exec_mode="task",
-                show_connection_info=False,
-                open_browser=False,
-                timeout=0,
-                disable_logging=True,
-            ),
+        self._server = server
+        self._task = server.start(
+            backend="generic",
+            exec_mode="task",
+            show_connection_info=False,
+            open_browser=False,
+            timeout=0,
+            disable_logging=True,
         )
         self.session.open()
         started(self.session.watch_bench())
@@ -159,11 +157,8 @@ class Tabs:
             await tab.talk(socket)
             return socket
         if name == "viewer.html":
-            return web.Response(
-                text=tab.session.viewer_page,
-                content_type="text/html",
-                headers={"Content-Security-Policy": _page_policy("frame-ancestors 'self'")},
-            )
+            headers = {"Content-Security-Policy": _page_policy("frame-ancestors 'self'")}
+            return web.Response(text=tab.session.viewer_page, content_type="text/html", headers=headers)
         if name == "viewer-rest.json":
             return web.json_response(tab.session.viewer_rest)
         if name == "report.html":

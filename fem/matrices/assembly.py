@@ -19,8 +19,7 @@ from fem.matrices.bends import Bends
 from fem.matrices.block import Block, block_of
 from fem.matrices.elements import HasTensor
 from fem.matrices.surface import Film, Touch, Trace, touch_of, trace_of
-from geom.arrays import Array as Floats
-from geom.arrays import Ints
+from geom.arrays import Array as Floats, Ints
 from geom.errors import InputError
 from geom.meshing.mesh import NamedMesh
 

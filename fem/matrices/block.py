@@ -11,8 +11,7 @@ import scipy.sparse as sp
 from fem.matrices import kernels
 from fem.matrices.bends import edge_table
 from fem.matrices.elements import Elements, HasTensor, Midsides
-from geom.arrays import Array as Floats
-from geom.arrays import Ints
+from geom.arrays import Array as Floats, Ints
 from geom.errors import InputError
 from geom.meshing.mesh import NamedMesh
 
@@ -23,7 +22,6 @@ class Block:
 
     elements : what its n unknowns are, the m corners first
     dofs : its slice of the whole;  K : (n, n) conduction (W/K);  M : (n, n) capacity (J/K);  w : (n,) Int N (m3)
-    conductivity : the tensor field K was made of
     """
 
     name: str
@@ -35,7 +33,6 @@ class Block:
     M: sp.csr_array
     w: Floats
     rho_cp: float
-    conductivity: HasTensor
 
     @property
     def n(self) -> int:
@@ -71,18 +68,6 @@ class Block:
         """(nt,) number of the connected piece each tetrahedron belongs to (the four coils of one winding)."""
         return sp.csgraph.connected_components(self.K, directed=False)[1][self.tets[:, 0]].astype(np.int64)
 
-    def at_centres(self, T: Floats) -> Floats:
-        """(nt,) mean over each tetrahedron of T (n,)."""
-        return self.elements.means(T)
-
-    def scaled(self, factor: Floats) -> sp.csr_array:
-        """(n, n) conduction (W/K) with the conductivity of every tetrahedron times factor (nt,)."""
-        return self.elements.conduction(self.conductivity, factor)
-
-    def scaled_slope(self, slope: Floats, T: Floats) -> sp.csr_array:
-        """(n, n) what `scaled(f(T)) @ T` changes by through f alone, f'(T) = slope (nt,); not symmetric."""
-        return self.elements.conduction_slope(self.conductivity, slope, T)
-
     def mass(self, density: Floats) -> sp.csr_array:
         """(n, n) Int density N N' for a density (nt,) per m3."""
         return self.elements.mass(density * self.volumes)
@@ -102,7 +87,7 @@ def block_of(
     elements = Elements.on(tets, xyz, midsides)
     dofs = slice(start, start + len(elements.xyz))
     K, M, w = elements.conduction(conductivity), elements.mass(rho_cp * volumes), elements.nodal(volumes)
-    return Block(mesh.parts[number], points, elements, volumes, dofs, K, M, w, rho_cp, conductivity)
+    return Block(mesh.parts[number], points, elements, volumes, dofs, K, M, w, rho_cp)
 
 
 def renumbered(cells: Ints, n: int) -> tuple[Ints, Ints]:

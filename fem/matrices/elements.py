@@ -13,7 +13,7 @@ Source: Zienkiewicz and Taylor 2000, "The finite element method", volume 1, 8.6.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cache, cached_property
 from typing import Protocol
@@ -25,8 +25,7 @@ from skfem.quadrature import get_quadrature
 from skfem.refdom import RefTet
 
 from fem.matrices import kernels
-from geom.arrays import Array as Floats
-from geom.arrays import Ints
+from geom.arrays import Array as Floats, Ints
 
 # Of every edge, of none, or of which of those from a to b (n, 3).
 Midsides = bool | Callable[[Floats, Floats], NDArray[np.bool_]]
@@ -94,22 +93,14 @@ class Elements:
         """Of the temperature in a tetrahedron."""
         return 1 if self.cells.shape[1] == 4 else 2
 
-    def conduction(self, conductivity: HasTensor, factor: Floats | None = None) -> sp.csr_array:
-        """(n, n) Int grad N_i . k grad N_j (W/K), times factor (nt,); k at the centre of each tetrahedron."""
+    def conduction(self, conductivity: HasTensor) -> sp.csr_array:
+        """(n, n) Int grad N_i . k grad N_j (W/K); k at the centre of each tetrahedron."""
         out = self._empty()
-        for some, k in self._tensors(conductivity):
-            k = k if factor is None else k * factor[some, None, None]
+        for first in range(0, len(self.tets), CHUNK):  # so that memory stays small
+            some = slice(first, first + CHUNK)
+            k = np.ascontiguousarray(conductivity.tensor(self.xyz[self.tets[some]].mean(1)))
             local = self.xyz, self.tets[some], self.cells[some], k, _reference(self.degree)[0]
             kernels.conduction(*local, out.indptr, out.indices, out.data)
-        return self._of_unknowns(out)
-
-    def conduction_slope(self, conductivity: HasTensor, slope: Floats, T: Floats) -> sp.csr_array:
-        """(n, n) what `conduction(k, f) @ T` changes by through f alone, f'(T) = slope (nt,); not symmetric."""
-        out, T = self._empty(), self.nodes @ T
-        for some, k in self._tensors(conductivity):
-            local = self.xyz, self.tets[some], self.cells[some], k, _reference(self.degree)[0]
-            change = slope[some, None] * MEANS[self.degree]
-            kernels.conduction_slope(*local, change, T, out.indptr, out.indices, out.data)
         return self._of_unknowns(out)
 
     def mass(self, amount: Floats) -> sp.csr_array:
@@ -124,10 +115,6 @@ class Elements:
         for unknowns, share in zip(self.cells.T, MEANS[self.degree], strict=True):
             out += np.bincount(unknowns, share * amount, len(out))
         return np.asarray(self.nodes.T @ out)
-
-    def means(self, T: Floats) -> Floats:
-        """(nt,) mean over every tetrahedron of T (n,)."""
-        return np.asarray((self.nodes @ T)[self.cells] @ MEANS[self.degree])
 
     def row(self, tet: int, corner: Floats) -> tuple[Ints, Floats]:
         """Unknowns and their weights at a point of a tetrahedron with barycentric coordinates `corner` (4,)."""
@@ -152,12 +139,6 @@ class Elements:
     def _of_unknowns(self, A: sp.csr_array) -> sp.csr_array:
         """(n, n) from a matrix (n_nodes, n_nodes)."""
         return A if self.nodes.shape[0] == len(self.xyz) else sp.csr_array(self.nodes.T @ A @ self.nodes)
-
-    def _tensors(self, conductivity: HasTensor) -> Iterator[tuple[slice, Floats]]:
-        """Slices of the tetrahedra with the tensors (., 3, 3) at their centres, so that memory stays small."""
-        for first in range(0, len(self.tets), CHUNK):
-            some = slice(first, first + CHUNK)
-            yield some, np.ascontiguousarray(conductivity.tensor(self.xyz[self.tets[some]].mean(1)))
 
 
 MEANS = {1: np.full(4, 0.25), 2: np.repeat([-1 / 20, 1 / 5], [4, 6])}  # of each function over a tetrahedron

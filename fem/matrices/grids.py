@@ -8,8 +8,7 @@ from itertools import permutations
 import numpy as np
 from numpy.typing import NDArray
 
-from geom.arrays import Array as Floats
-from geom.arrays import Ints
+from geom.arrays import Array as Floats, Ints
 from geom.meshing.mesh import Contact, NamedMesh, Patch
 
 Naming = Callable[[Floats], NDArray[np.str_]]

@@ -85,20 +85,6 @@ def conduction(xyz, tets, cells, k, reference, indptr, indices, data):  # type: 
 
 
 @njit(**_OPTIONS)
-def conduction_slope(xyz, tets, cells, k, reference, change, T, indptr, indices, data):  # type: ignore[no-untyped-def]
-    """Adds d/dT_j of (f(T_mean) K_e T)_i beside f K_e: change (m, n) is df/dT times the share of T_j in T_mean."""
-    n, grad, local = cells.shape[1], np.empty((4, 3)), np.empty(reference.shape[1])
-    for e in range(len(tets)):
-        _local_conduction(xyz, tets[e], k[e], reference, grad, local)
-        for a in range(n):
-            heat = 0.0
-            for b in range(n):
-                heat += local[a * n + b] * T[cells[e, b]]
-            for b in range(n):
-                _add(indptr, indices, data, cells[e, a], cells[e, b], heat * change[e, b])
-
-
-@njit(**_OPTIONS)
 def mass(cells, sizes, reference, indptr, indices, data):  # type: ignore[no-untyped-def]
     """Adds Int N_i N_j for sizes (m,), volumes or areas, times whatever is to be integrated; reference : of size 1."""
     for e in range(len(cells)):

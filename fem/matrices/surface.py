@@ -13,8 +13,7 @@ from skfem.refdom import RefTri
 from fem.matrices import kernels
 from fem.matrices.block import Block, renumbered
 from fem.matrices.elements import RIM, hats, pattern
-from geom.arrays import Array as Floats
-from geom.arrays import Ints
+from geom.arrays import Array as Floats, Ints
 from geom.errors import InputError
 from geom.meshing.mesh import NamedMesh
 

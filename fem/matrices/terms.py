@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Protocol
 
@@ -55,37 +54,6 @@ class Radiation:
     @property
     def _c(self) -> float:
         return self.emissivity * SIGMA
-
-
-@dataclass(frozen=True)
-class VaryingConductivity:
-    """A part whose conductivity is factor(T) times what it was assembled with; T (degC) is each element's mean.
-
-    derivative : of the factor (1/K)
-    """
-
-    part: str
-    factor: Callable[[Floats], Floats]
-    derivative: Callable[[Floats], Floats]
-
-    def heat(self, field: FieldModel, T: Floats) -> Floats:
-        block, out = field.block(self.part), np.zeros(field.n)
-        mine = T[block.dofs]
-        out[block.dofs] = block.scaled(self._factor(block.at_centres(mine)) - 1.0) @ mine
-        return out
-
-    def slope(self, field: FieldModel, T: Floats) -> sp.csr_array:
-        block = field.block(self.part)
-        mine = T[block.dofs]
-        centre = block.at_centres(mine)
-        local = block.scaled(self._factor(centre) - 1.0) + block.scaled_slope(self.derivative(centre), mine)
-        return field.spread(local, np.arange(block.dofs.start, block.dofs.stop))
-
-    def _factor(self, T: Floats) -> Floats:
-        factor = self.factor(T)
-        if not np.all(factor > 0):
-            raise InputError("conductivity falls to 0 or below", f"part '{self.part}'", "a factor above 0")
-        return factor
 
 
 @dataclass(frozen=True)

@@ -15,8 +15,7 @@ import scipy.sparse as sp
 from numpy.typing import NDArray
 from scipy.sparse.csgraph import maximum_bipartite_matching
 
-from geom.arrays import Array as Floats
-from geom.arrays import Ints
+from geom.arrays import Array as Floats, Ints
 
 DIRECTIONS = np.array([[1, 0, 0], [0, 1, 0], [0, 0, 1], [1, 1, 0], [1, -1, 0]]).T / 1.0
 BALANCE = 0.35  # the smaller half holds at least this share

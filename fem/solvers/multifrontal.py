@@ -14,8 +14,7 @@ import scipy.sparse as sp
 from scipy.linalg import blas, lapack
 
 from fem.solvers.dissection import Tree, dissect
-from geom.arrays import Array as Floats
-from geom.arrays import Ints
+from geom.arrays import Array as Floats, Ints
 from geom.errors import InputError
 
 

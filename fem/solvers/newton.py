@@ -1,4 +1,4 @@
-"""Steady heat whose terms depend on temperature: radiation, conductivity, copper loss; by Newton's method.
+"""Steady heat whose terms depend on temperature: radiation, copper loss; by Newton's method.
 
 The Jacobian is symmetric but for conductivity that varies with temperature and for streams. The factor sees its
 symmetric part; GMRES does the rest, where there is one.

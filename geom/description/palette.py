@@ -3,28 +3,13 @@
 from __future__ import annotations
 
 import colorsys
+import csv
 import hashlib
+from pathlib import Path
 
-_COLOURS = {
-    "field-winding": (0.78, 0.38, 0.16),
-    "end-winding": (0.91, 0.58, 0.34),
-    "winding": (0.85, 0.45, 0.20),
-    "copper": (0.85, 0.50, 0.28),
-    "commutator": (0.80, 0.55, 0.30),
-    "insul": (0.95, 0.90, 0.55),
-    "liner": (0.95, 0.90, 0.55),
-    "resin": (0.98, 0.95, 0.75),
-    "mica": (0.90, 0.82, 0.50),
-    "magnet": (0.30, 0.50, 0.80),
-    "electrical-steel": (0.62, 0.65, 0.69),
-    "steel": (0.45, 0.50, 0.56),
-    "bearing": (0.30, 0.33, 0.38),
-    "aluminium": (0.84, 0.86, 0.88),
-    "polyamide": (0.38, 0.40, 0.36),
-    "wood": (0.78, 0.62, 0.44),
-    "glycol": (0.60, 0.82, 0.93),
-    "water": (0.60, 0.82, 0.93),
-}
+with Path(__file__).with_name("palette.csv").open(encoding="utf-8", newline="") as _file:
+    _, *_rows = csv.reader(_file)
+_COLOURS = {word: (float(red), float(green), float(blue)) for word, red, green, blue in _rows}
 
 
 def colour(material: str) -> tuple[float, float, float]:

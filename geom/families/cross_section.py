@@ -12,8 +12,7 @@ from dataclasses import replace
 from geom.description import shapes
 from geom.description.geometry import Geometry
 from geom.description.outlines import INSET, Outline, Outlines, notched_loop, radii, refuse_cuts
-from geom.description.parameters import Measure, Parameter, choice
-from geom.description.parameters import length as mm
+from geom.description.parameters import Measure, Parameter, choice, length as mm
 from geom.description.part import Part, extrude, fluid
 from geom.description.profile import Profile
 from geom.description.roles import Role

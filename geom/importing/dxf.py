@@ -101,10 +101,8 @@ class Section:
         except InputError:
             if copies == 1:
                 raise
-            loops, copies = (
-                loops_and_paths(whole_turn(self.edges[kind], copies, start, cut=True), self.where(kind))[0],
-                1,
-            )
+            loops = loops_and_paths(whole_turn(self.edges[kind], copies, start, cut=True), self.where(kind))[0]
+            copies = 1
         rings = sorted((loop for loop in loops if _encloses(loop)), key=_area)
         parts = [part for ring in zip(rings[::2], rings[1::2]) for part in _ring(*ring)]
         loops = [loop for loop in loops if loop not in rings] + parts

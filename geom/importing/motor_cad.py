@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import cmath
 import math
+import tomllib
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -21,49 +22,9 @@ RIGHT = "a Motor-CAD file: [Header] with Program_Name=Motor-CAD, then sections o
 METRES = 1e-3  # lengths of the file are in mm
 LITRES_PER_MIN = 6e4  # in m3/s
 COOLANTS = {"egw 50/50": "glycol-50", "water": "water", "pgw 50/50": "propylene-glycol-50"}
-# Interface gaps (mm of air) and the joint they are in.
-GAPS = {
-    "Stator_Lam_-_Housing": "housing|stator.core",
-    "Magnet_-_Rotor_Lam": "magnets|rotor.core",
-    "Rotor_Lam_-_Shaft": "rotor.core|shaft",
-    "HOUSING_-_ENDCAP_[F]": "endcap.left|housing",
-    "HOUSING_-_ENDCAP_[R]": "endcap.right|housing",
-    "Bearing_-_Shaft_[F]": "bearing.left|shaft",
-    "Bearing_-_Shaft_[R]": "bearing.right|shaft",
-    "Bearing_-_Endcap_[F]": "bearing.left|endcap.left",
-    "Bearing_-_Endcap_[R]": "bearing.right|endcap.right",
-}
 HOME = {"Shaft_Speed": "Miscellaneous"}  # of keys that several sections have, the one that counts
-# Loss at a reference speed: its key, reference speed and exponent, and where it is here.
-LOSSES = {
-    "Stator_Copper_Loss_@Ref_Speed": ("Armature_Copper_Loss", "Stator_Copper_Loss", "stray", "winding.copper"),
-    "Stator_Iron_Loss_@Ref_Speed_[Back_Iron]": ("Stator_Iron_Loss_[Back_Iron]", "", "stray", "stator.core.back"),
-    "Stator_Iron_Loss_@Ref_Speed_[Tooth]": ("Stator_Iron_Loss_[Tooth]", "", "stray", "stator.core.teeth"),
-    "Rotor_Iron_Loss_@Ref_Speed_[Back_Iron]": ("Rotor_Iron_Loss_[Back_Iron]", "", "stray", "rotor.core"),
-    "Magnet_Iron_Loss_@Ref_Speed": ("Magnet_Iron_Loss", "", "magnet", "magnets"),
-    "Windage_Loss_@Ref_Speed": ("Windage_Loss", "", "windage", "airgap"),
-    "Friction_Loss_[F]_@Ref_Speed": ("Friction_Loss_[F]", "", "bearing", "bearing.left"),
-    "Friction_Loss_[R]_@Ref_Speed": ("Friction_Loss_[R]", "", "bearing", "bearing.right"),
-}
-# What matters where it is not neutral, and goes nowhere here.
-IGNORED = {
-    "Sleeve_Thickness": (0.0, "no sleeve here: the air gap is as wide as Airgap"),
-    "Banding_Thickness": (0.0, "no banding here: the air gap is as wide as Airgap"),
-    "Rotor_Water_Jacket": ("False", "the rotor has no jacket here"),
-    "Slot_Water_Jacket": ("False", "slots have no coolant here"),
-    "Spray_Cooling": ("False", "no spray here"),
-    "Wedge_Model": ("None", "the slot's opening is air here"),
-    "Liner_-_Lam_Gap": (0.0, "the liner touches the teeth here"),
-    "Number_Ducts": (0.0, "no ducts along the axis here"),
-    "Cooling_Type": ("Natural_Convection", "fans and vents are not read"),
-}
-# The table's material for a part, with the conductivity (W/m/K) it has there, and the file's key.
-CONDUCTIVITIES = {
-    "Thermal_Conductivity_Housing_[A]": ("aluminium-cast", 150.0),
-    "Thermal_Conductivity_Stator_Lam_[Back_Iron]": ("electrical-steel", 28.0),
-    "Thermal_Conductivity_Copper_-_Active": ("copper", 385.0),
-    "Thermal_Conductivity_Magnet": ("magnet-ndfeb", 8.0),
-}
+# What keys of a file are here.
+_KEYS = tomllib.loads(Path(__file__).with_name("motor_cad.toml").read_text("utf-8"))
 
 
 @dataclass
@@ -122,14 +83,12 @@ def read_motor_cad(path: Path, family_template: str) -> Draft:
     _frame(draft, file, family_template)
     _cooling(draft, file)
     parts = assumptions.parts_of(draft)
-    for key, pair in GAPS.items():
+    for key, pair in _KEYS["gaps"].items():
         gap = file.number(key, 0.0, 10.0, usual=0.0)
         if gap and set(pair.split("|")) <= parts:
             draft.take("contacts", f"{key}, mm of air", **{pair: {"gap_mm": gap}})
-    liner, k = (
-        file.number("Liner_Thickness", usual=0.0),
-        file.number("Thermal_Conductivity_Slot_Liner", 1e-3, 500, 0.21),
-    )
+    liner = file.number("Liner_Thickness", usual=0.0)
+    k = file.number("Thermal_Conductivity_Slot_Liner", 1e-3, 500, 0.21)
     h = round(k / (METRES * liner), 2) if liner else None
     assumptions.contacts(draft, h, "Liner_Thickness, Thermal_Conductivity_Slot_Liner")
     _losses(draft, file, copper)
@@ -391,7 +350,7 @@ def _cooling(draft: Draft, file: File) -> None:
 
 def _losses(draft: Draft, file: File, copper: tuple[float, float, float]) -> None:
     """As the file has them at its reference speeds; where it has none but in the copper, the usual ones."""
-    watts = {key: file.number(key, 0.0, 1e9, 0.0) for key in LOSSES}
+    watts = {key: file.number(key, 0.0, 1e9, 0.0) for key in _KEYS["losses"]}
     speed = file.number("Shaft_Speed", 0.0, 1e6, assumptions.USUAL_RPM)
     if not any(watts.values()):
         draft.leave("[Losses_At_RPM_Ref]", "0", "no losses in the file")
@@ -400,7 +359,7 @@ def _losses(draft: Draft, file: File, copper: tuple[float, float, float]) -> Non
         assumptions.losses(draft, *copper, iron, density)
         return
     draft.take("ratings", "Shaft_Speed", speed_rpm=speed)
-    for key, (name, other, kind, place) in LOSSES.items():
+    for key, (name, other, kind, place) in _KEYS["losses"].items():
         if not watts[key]:
             continue
         reference = file.number(f"Ref_Speed_-_{name}", 1.0, 1e6, assumptions.USUAL_RPM)
@@ -418,11 +377,11 @@ def _losses(draft: Draft, file: File, copper: tuple[float, float, float]) -> Non
 
 def _left(draft: Draft, file: File) -> None:
     """What matters and goes nowhere; values that differ from our table's; stored temperatures."""
-    for key, (neutral, why) in IGNORED.items():
+    for key, (neutral, why) in _KEYS["ignored"].items():
         text = file.text(key)
         if text and text != str(neutral) and not (isinstance(neutral, float) and _zero(text)):
             draft.leave(key, text, why)
-    for key, (ours, k) in CONDUCTIVITIES.items():
+    for key, (ours, k) in _KEYS["conductivities"].items():
         value = file.number(key, 0.0, 1e4, k)
         if abs(value - k) > 0.01 * k:
             draft.leave(key, value, f"{ours} of our table has {k:g} W/m/K; another material by [materials]")

@@ -13,12 +13,12 @@ import numpy as np
 from geom.description.machine import Machine, step_sidecar
 from geom.description.names import file_stem
 from geom.description.palette import colour
-from geom.description.part import Part, Prism
+from geom.description.part import CadShape, Helix, Part, Prism, Rod
 from geom.description.roles import Identity
 from geom.disk_cache import cache_file, recalled, stored
 from geom.errors import InputError
-from geom.solids.carved import carved
-from geom.solids.glb import write_glb
+from geom.solids.brep import Boundary
+from geom.solids.screw import channel
 from geom.solids.stack import stacked
 
 if TYPE_CHECKING:
@@ -137,3 +137,52 @@ def _materials(machine: Machine) -> str:
 
 def _role(identity: Identity) -> dict[str, str | bool]:
     return ({} if identity.role is None else {"role": str(identity.role)}) | {"turns": bool(identity.turns)}
+
+
+def write_glb(whole: cq.Assembly, path: Path) -> None:
+    """The assembly (mm, z along the machine's axis) as glTF, binary, as its users expect it: metres, y upwards, one
+    named node per part."""
+    from cadquery.occ_impl.assembly import toCAF
+    from OCP.Message import Message_ProgressRange
+    from OCP.RWGltf import RWGltf_CafWriter
+    from OCP.RWMesh import RWMesh_CoordinateSystem
+    from OCP.TCollection import TCollection_AsciiString
+    from OCP.TColStd import TColStd_IndexedDataMapOfStringString
+
+    _, document = toCAF(whole, False, True, 0.1, 0.1)  # mm, rad: how far triangles may lie from the surface
+    writer = RWGltf_CafWriter(TCollection_AsciiString(str(path)), True)
+    writer.SetMergeFaces(True)
+    system = writer.ChangeCoordinateSystemConverter()
+    system.SetInputLengthUnit(1e-3)  # m
+    system.SetInputCoordinateSystem(RWMesh_CoordinateSystem.RWMesh_CoordinateSystem_Zup)
+    writer.Perform(document, TColStd_IndexedDataMapOfStringString(), Message_ProgressRange())
+
+
+def carved(shape: CadShape) -> list[cq.Solid]:
+    """The solids (mm) that are left of the start: round ports and helical channels, which prisms can only simplify.
+
+    Helices lie wholly inside the start.
+    """
+    import cadquery as cq
+
+    body: Any
+    (body,) = [_rod(shape.start)] if isinstance(shape.start, Rod) else stacked(shape.start)
+    voids = [channel(cut) for cut in shape.cuts if isinstance(cut, Helix)]
+    if voids:
+        shells = [shell.wrapped for shell in body.Shells()]
+        inside = [shell.wrapped.Reversed() for void in voids for shell in void.Shells()]
+        body = Boundary().solid([*shells, *inside])
+    tools = [_tool(cut) for cut in shape.cuts if not isinstance(cut, Helix)]
+    return [cq.Solid(solid.wrapped) for solid in body.cut(*tools).Solids()] if tools else [body]
+
+
+def _tool(piece: Prism | Rod) -> cq.Solid:
+    return _rod(piece) if isinstance(piece, Rod) else stacked([piece])[0]
+
+
+def _rod(rod: Rod) -> cq.Solid:
+    import cadquery as cq
+
+    out = cq.Vector(math.cos(rod.angle), math.sin(rod.angle), 0)
+    foot = out * (rod.inner * 1e3) + cq.Vector(0, 0, rod.z * 1e3)
+    return cq.Solid.makeCylinder(rod.diameter * 500, (rod.outer - rod.inner) * 1e3, foot, out)

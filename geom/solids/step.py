@@ -111,12 +111,8 @@ def _read_sidecar(path: Path) -> dict[str, Any]:
     if not path.is_file():
         return {}
     sidecar = read_toml(path, "what a STEP file does not say: [materials], [fluids], [losses.NAME] ...")
-    sections = (
-        "import",
-        "fluids",
-        "roles",
-        *(section for section in SECTIONS if section not in ("geometry", "outlines")),
-    )
+    others = (section for section in SECTIONS if section not in ("geometry", "outlines"))
+    sections = ("import", "fluids", "roles", *others)
     for section, table in sidecar.items():
         if section not in sections or not isinstance(table, Mapping):
             raise InputError(f"unknown section [{section}]", str(path), f"known: {', '.join(sections)}")

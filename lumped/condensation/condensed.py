@@ -53,7 +53,7 @@ def network_in(
     links += [_contact(field, shapes, key, touch, contacts[key]) for key, touch in field.contacts.items()]
     places = {key: _surface(field, shapes, key) for key in field.films}
     places |= {key: _loss(field, shapes, key, load, key in whole) for key, load in loads.items()}
-    places |= {f: _fluid(f, states.index(f)) for f in fluids}
+    places |= {f: Place(f, "fluid", f, np.array([states.index(f)]), np.ones((1, 1)), np.ones(1)) for f in fluids}
     return Network(
         name, tuple(states), np.array(C), boundaries, tuple(links), (), places, tuple(groups), (), Shapes(shapes)
     )
@@ -64,10 +64,6 @@ def _conduction(part: str, shape: PartShape, basis: Basis) -> Link:
     return Link(
         f"conduction:{part}", "conduction", (part, part), inner, inner, basis.conduction, Fixed(1.0), mean, mean
     )
-
-
-def _fluid(name: str, state: int) -> Place:
-    return Place(name, "fluid", name, np.array([state]), np.ones((1, 1)), np.ones(1))
 
 
 def _loss(field: FieldModel, shapes: Mapping[str, PartShape], key: str, load: Array, whole: bool) -> Place:

@@ -10,21 +10,10 @@ from itertools import pairwise
 from geom.constants import L_MIN, M3_H, RPM
 from lumped.correlations import Info
 from lumped.correlations.streams import Moving
-from lumped.declarations.films import (
-    contact,
-    film_air,
-    millimetres,
-    moving_film,
-    natural,
-    natural_film,
-    over,
-    read_coolant,
-    wet,
-)
+from lumped.declarations import films
 from lumped.model.quantities import AIR, LIQUID
 from lumped.schemas.reader import Table, powers
-from lumped.transfer.laws import Fixed, InputPower, Law, Power, Radiation
-from lumped.transfer.laws import Table as TableLaw
+from lumped.transfer.laws import Fixed, InputPower, Law, Power, Radiation, Table as TableLaw
 from lumped.transfer.properties import Fluid
 from lumped.transfer.shaft_fan import shaft_fan
 from lumped.transfer.streamed import Streamed
@@ -38,7 +27,7 @@ def gap(table: Table) -> Streamed:
     """From rotor to stator through the air between them, over the rotor's surface."""
     from lumped.correlations.air_gap import becker_kaye, taylor_film
 
-    radius, width = millimetres(table, "rotor_radius_mm"), millimetres(table, "gap_mm")
+    radius, width = films.millimetres(table, "rotor_radius_mm"), films.millimetres(table, "gap_mm")
     taylor = table.word("law", "taylor", ("taylor", "becker-kaye")) == "taylor"
 
     def film(rpm: float, fluid: Fluid) -> tuple[float, Info]:
@@ -54,23 +43,25 @@ def rotating(table: Table) -> Streamed:
     """A disc or a shaft that turns in open air, or in a coolant of a flooded end space."""
     from lumped.correlations.rotating import levich_disc, rotating_disc, rotating_shaft
 
-    disc, liquid = table.word("surface", None, ROTATING) == "disc", wet(table)
+    disc, liquid = table.word("surface", None, ROTATING) == "disc", films.wet(table)
     film, size = (levich_disc if liquid else rotating_disc, 0.5) if disc else (rotating_shaft, 1.0)
-    size *= millimetres(table, "diameter_mm")
+    size *= films.millimetres(table, "diameter_mm")
     return _over_speed(table, lambda rpm, fluid: film(rpm * RPM, size, fluid), 50.0, liquid)
 
 
 def _over_speed(table: Table, film: Moving, usual_degC: float, liquid: bool = False) -> Streamed:
     of, top = table.word("speed", "speed_rpm"), table.number("up_to_rpm", 20000.0)
-    return moving_film(table, of, film, read_coolant(table) if liquid else film_air(table), usual_degC, top, liquid)
+    return films.moving_film(
+        table, of, film, films.read_coolant(table) if liquid else films.film_air(table), usual_degC, top, liquid
+    )
 
 
 # Mixed convection in network.toml: still and moving air on one surface, which do not add
 def mixed(table: Table) -> list[Law]:
     """(h_forced^n + h_natural^n)^(1/n) of a `natural` and a `forced` table: still air, and what moving air adds."""
     still, moving = (Table(table.raw(key, {}), f"{table.where} {key}") for key in ("natural", "forced"))
-    film, factor = natural_film(still)
-    forced, exponent = over(moving), table.number("exponent", 3.0, of="mixed.exponent")
+    film, factor = films.natural_film(still)
+    forced, exponent = films.over(moving), table.number("exponent", 3.0, of="mixed.exponent")
     still.close()
     moving.close()
     scaled = replace(film, value=tuple(factor * h for h in film.value))
@@ -118,7 +109,7 @@ def _radiation(table: Table, has_area: bool) -> tuple[Law, bool]:
 def _forced(table: Table, has_area: bool) -> Read:
     if "surface" in table:
         _needs_area(table, has_area)
-        return over(table), True
+        return films.over(table), True
     coefficient, of = _coefficient(table, has_area), powers(table)
     if not of:
         right = 'surface = ... with speed = "INPUT", or of = { input = "speed_rpm", at = 1000, exponent = 0.8 }'
@@ -145,12 +136,12 @@ def _tabled(table: Table, has_area: bool) -> tuple[Law, bool]:
 
 
 MECHANISMS: dict[str, Callable[[Table, bool], Read]] = {
-    "natural": partial(_film, natural),
+    "natural": partial(_film, films.natural),
     "radiation": _radiation,
     "forced": _forced,
     "gap": partial(_film, gap),
     "rotating": partial(_film, rotating),
-    "contact": partial(_film, contact),
+    "contact": partial(_film, films.contact),
     "fan": partial(_film, shaft_fan),
     "power": _power,
     "table": _tabled,

@@ -109,10 +109,8 @@ class InductionMachine:
         def most(ratio: Array) -> Array:
             """Largest i_d at a ratio i_q / i_d: slip does not change with it, so that voltages grow in proportion."""
             one = self.operation(np.ones_like(ratio), sign * ratio, n, Tw, Tc)
-            volts, amperes = (
-                self.voltage_limit / np.maximum(one.voltage, TINY),
-                self.current_limit / np.hypot(1.0, ratio),
-            )
+            volts = self.voltage_limit / np.maximum(one.voltage, TINY)
+            amperes = self.current_limit / np.hypot(1.0, ratio)
             return np.minimum(np.minimum(volts, amperes), self.magnetising)
 
         def rough(x: Array) -> Array:

@@ -57,27 +57,13 @@ class PMMachine:
         w, R = self.pole_pairs * np.asarray(speed_rpm, float) * RPM, self.resistance(winding_degC)
         return R * i_d - w * self.Lq * i_q, R * i_q + w * (self.Ld * i_d + self.flux(magnet_degC))
 
-    def voltage(
-        self,
-        i_d: Array,
-        i_q: Array,
-        speed_rpm: Array | float,
-        winding_degC: Array | float = 20.0,
-        magnet_degC: Array | float = 20.0,
-    ) -> Array:
-        """Peak phase voltage (V)."""
-        return np.hypot(*self.voltages(i_d, i_q, speed_rpm, winding_degC, magnet_degC))
+    def voltage(self, i_d: Array, i_q: Array, *at: Array | float) -> Array:
+        """Peak phase voltage (V);  at : speed and temperatures as of `voltages`."""
+        return np.hypot(*self.voltages(i_d, i_q, *at))
 
-    def power(
-        self,
-        i_d: Array,
-        i_q: Array,
-        speed_rpm: Array | float,
-        winding_degC: Array | float = 20.0,
-        magnet_degC: Array | float = 20.0,
-    ) -> Array:
-        """Electrical power taken (W); negative where the machine generates."""
-        v_d, v_q = self.voltages(i_d, i_q, speed_rpm, winding_degC, magnet_degC)
+    def power(self, i_d: Array, i_q: Array, *at: Array | float) -> Array:
+        """Electrical power taken (W); negative where the machine generates.  at : speed and temperatures."""
+        v_d, v_q = self.voltages(i_d, i_q, *at)
         return 1.5 * (v_d * i_d + v_q * i_q)
 
     def currents(

@@ -21,21 +21,8 @@ from lumped.integration.failure import failure
 from lumped.integration.reach import Reach
 from lumped.integration.record import Record, instants
 from lumped.model.network import Network, Parameter, Row
+from lumped.numerics import kernel
 from lumped.numerics.dense import factored
-from lumped.numerics.kernel import (
-    COUNT,
-    FACTORED,
-    FULL,
-    LOW,
-    NEXT,
-    NODE,
-    SAMPLE,
-    STATUS,
-    Control,
-    Position,
-    Trace,
-    integrate,
-)
 from lumped.numerics.stages import EULER, GAMMA, Steps, stages, work
 from lumped.numerics.steady_start import solve_steady_start
 from lumped.numerics.tangents import differentiate
@@ -210,14 +197,17 @@ class _Course:
         self.moved = (stages(x0, u0, core.terms), work(n, nb, core.terms, p)) if p else (self.both, self.scratch)
         most = min(core.forcing.time.size * 2 if steps is None else steps.knot.size, portion)
         self.trace = _trace(min(most, max(FACTORS // n**2, 1)) if p else most, core, nb, bool(p))
-        self.position = Position(np.zeros(6, np.int64), np.array([0.0, -1.0, 1e300, 1e300]))
-        self.position.clock[LOW] = np.append(x0[core.control.node == 1], u0).min()
+        self.position = kernel.Position(np.zeros(6, np.int64), np.array([0.0, -1.0, 1e300, 1e300]))
+        self.position.clock[kernel.LOW] = np.append(x0[core.control.node == 1], u0).min()
         self.reach, self.steps = Reach(core), list[Steps]()
         self.path: list[Array] | None = None
         self.moved[1].D[:, : self.tangents] = core.tangents.first
         if begin:
             self.moved[1].D[:, : self.tangents] = begin.D[self.order, : self.tangents]
-            self.position.clock[[NEXT, LOW]] = begin.step, min(begin.coldest, self.position.clock[LOW])
+            self.position.clock[[kernel.NEXT, kernel.LOW]] = (
+                begin.step,
+                min(begin.coldest, self.position.clock[kernel.LOW]),
+            )
 
     def over(self, part: slice, rests: bool) -> None:
         """The knots of a part of the record, from a balance of the states without capacity if so asked."""
@@ -227,9 +217,9 @@ class _Course:
             Q.time[part], Q.u[part], Q.factor[part], Q.bulge[part], Q.arch[part], Q.renew[part], first, Q.share
         )
         self.position.at[:] = 0
-        self.position.at[SAMPLE] = forcing.first[0]
+        self.position.at[kernel.SAMPLE] = forcing.first[0]
         self.both.z[0, self.core.C.size : -1] = forcing.u[0]
-        self.position.clock[FACTORED] = -1.0
+        self.position.clock[kernel.FACTORED] = -1.0
         if rests and np.any(self.core.C == 0.0):
             self._rest(forcing)
         while self._portion(forcing, part.start):
@@ -242,18 +232,18 @@ class _Course:
             raise self._failed(forcing)
 
     def _failed(self, forcing: Forcing) -> NoSolution:
-        self.position.at[NODE] = self.order[self.position.at[NODE]]
+        self.position.at[kernel.NODE] = self.order[self.position.at[kernel.NODE]]
         return NoSolution(failure(self.network, self.named, forcing, self.position))
 
     def _portion(self, forcing: Forcing, first: int) -> bool:
         """As many steps as the trace holds; whether there are more."""
-        core, at, sample = self.core, self.position.at, int(self.position.at[SAMPLE])
+        core, at, sample = self.core, self.position.at, int(self.position.at[kernel.SAMPLE])
         control = core.control if self.given is None else self._follow(first)
         common = (core.rows, control, self.trace, self.position, self.both, self.scratch)
-        integrate(forcing, core.C, core.K0, core.terms, *common, self.z, self.y)
-        if at[STATUS] not in (0, FULL):
+        kernel.integrate(forcing, core.C, core.K0, core.terms, *common, self.z, self.y)
+        if at[kernel.STATUS] not in (0, kernel.FULL):
             raise self._failed(forcing)
-        count, X = int(at[COUNT]), self.trace
+        count, X = int(at[kernel.COUNT]), self.trace
         self.steps_done += count
         self.steps.append(Steps(X.knot[:count] + first, X.share[:count].copy(), X.kind[:count].copy()))
         if not self.tangents and count:
@@ -261,11 +251,11 @@ class _Course:
         if self.path is not None:
             self.path.append(ends(X, count)[:, self.place[: core.C.size]])
         if self.tangents:
-            position = (core.rows, core.curved, X, count, sample, int(at[SAMPLE]), *self.moved, self.dy)
+            position = (core.rows, core.curved, X, count, sample, int(at[kernel.SAMPLE]), *self.moved, self.dy)
             differentiate(forcing, core.C, core.K0, core.terms, core.tangents, *position)
-        return bool(at[STATUS] == FULL)
+        return bool(at[kernel.STATUS] == kernel.FULL)
 
-    def _follow(self, first: int) -> Control:
+    def _follow(self, first: int) -> kernel.Control:
         """The next of the given steps into the trace."""
         assert self.given is not None
         some = slice(self.steps_done, self.steps_done + self.trace.h.size)
@@ -282,7 +272,7 @@ class _Course:
             self.reach.tell()
         clock = self.position.clock
         x, D = self.both.z[0, self.place[: self.core.C.size]], self.moved[1].D[self.place, : self.tangents]
-        end = Stand(x, D, float(clock[NEXT]), float(clock[LOW]))
+        end = Stand(x, D, float(clock[kernel.NEXT]), float(clock[kernel.LOW]))
         steps = Steps(*(np.concatenate(x) for x in zip(*self.steps, strict=True)))
         dy = np.ascontiguousarray(self.dy[:, :, : self.tangents]) if self.tangents else None
         return Run(
@@ -296,20 +286,20 @@ class _Course:
         )
 
 
-def ends(X: Trace, count: int) -> Array:
+def ends(X: kernel.Trace, count: int) -> Array:
     """(count, n) states at the ends of the steps in a trace."""
     inner = np.where(X.kind[:count, None] == EULER, X.U[:count, 0], X.U[:count, 0] / GAMMA)
     return np.asarray(X.x[:count, : inner.shape[1]] + inner + X.U[:count, 2])
 
 
-def _trace(ns: int, core: Compiled, nb: int, moves: bool) -> Trace:
+def _trace(ns: int, core: Compiled, nb: int, moves: bool) -> kernel.Trace:
     """Of ns steps;  moves : for tangents, which need the LU of every step."""
     n, slots = core.C.size, ns if moves else 1
 
     def whole() -> Ints:
         return np.zeros(ns, np.int64)
 
-    return Trace(
+    return kernel.Trace(
         whole(),
         np.zeros(ns),
         np.zeros(ns),

@@ -123,24 +123,18 @@ def _by_heat(top: Topology, body: str, turns: Mapping[str, bool]) -> Evidence | 
     if "magnet" in kinds:
         return Role.MAGNET, "carries a loss of magnets"
     if kinds & {"copper", "ripple"}:
-        return (
-            (Role.CAGE, "copper loss of its own current, and turns")
-            if turning_ and _has_separate_current(top, body, turns)
-            else (Role.WINDING, "carries a copper loss")
-        )
+        if turning_ and _has_separate_current(top, body, turns):
+            return Role.CAGE, "copper loss of its own current, and turns"
+        return Role.WINDING, "carries a copper loss"
     if body in top.bearings:
         outside = [b for b in top.network.boundaries if b in top.neighbours.get(body, frozenset())]
-        return (
-            (Role.END_SHIELD, "carries friction and meets the outside")
-            if outside
-            else (Role.BEARING, "carries friction")
-        )
+        if outside:
+            return Role.END_SHIELD, "carries friction and meets the outside"
+        return Role.BEARING, "carries friction"
     if kinds & {"iron", "map", "stray", "measured"}:
-        return (
-            (Role.ROTOR, "carries a loss of the field and turns")
-            if turning_
-            else (Role.IRON, "carries a loss of the field")
-        )
+        if turning_:
+            return Role.ROTOR, "carries a loss of the field and turns"
+        return Role.IRON, "carries a loss of the field"
     return None
 
 

@@ -6,19 +6,10 @@ from collections.abc import Callable
 from functools import partial
 
 from geom.errors import InputError
+from lumped.transfer import properties
 from lumped.transfer.oils import ATF, DataSheet
-from lumped.transfer.properties import (
-    ATMOSPHERE_BAR,
-    Fluid,
-    air,
-    ethylene_glycol,
-    mass_fraction_of,
-    oil,
-    propylene_glycol,
-    water,
-)
 
-Coolant = Callable[[float], Fluid]
+Coolant = Callable[[float], properties.Fluid]
 
 
 def glycol(kind: str, mass_percent: float | None = None, volume_percent: float | None = None) -> Coolant:
@@ -28,14 +19,15 @@ def glycol(kind: str, mass_percent: float | None = None, volume_percent: float |
     """
     if (mass_percent is None) == (volume_percent is None):
         raise InputError("share of glycol not stated once", f"{kind} glycol", "mass_percent or volume_percent")
-    share = mass_percent / 100 if mass_percent is not None else mass_fraction_of((volume_percent or 0.0) / 100, kind)
+    by_volume = (volume_percent or 0.0) / 100
+    share = properties.mass_fraction_of(by_volume, kind) if mass_percent is None else mass_percent / 100
     if not 0.0 <= share <= 0.6:
         raise InputError(f"{100 * share:.3g} % by mass", f"{kind} glycol", "0 to 60 % by mass")
-    mixture = {"ethylene": ethylene_glycol, "propylene": propylene_glycol}[kind]
+    mixture = {"ethylene": properties.ethylene_glycol, "propylene": properties.propylene_glycol}[kind]
     return partial(mixture, mass_fraction=share)
 
 
-PLAIN: dict[str, Coolant] = {"water": water, "oil": oil, "ATF": ATF, "air": air}
+PLAIN: dict[str, Coolant] = {"water": properties.water, "oil": properties.oil, "ATF": ATF, "air": properties.air}
 MIXED = {"ethylene glycol": "ethylene", "propylene glycol": "propylene"}
 NAMES = (*PLAIN, *MIXED)
 
@@ -45,7 +37,7 @@ def coolant(
     mass_percent: float | None = None,
     volume_percent: float | None = None,
     altitude_m: float = 0.0,
-    pressure_bar: float = ATMOSPHERE_BAR,
+    pressure_bar: float = properties.ATMOSPHERE_BAR,
     sheet: DataSheet | None = None,
 ) -> Coolant:
     """T (degC) -> Fluid, by name; a share for glycols only, an altitude for air, a data sheet for oil only.
@@ -61,5 +53,5 @@ def coolant(
     if mass_percent is not None or volume_percent is not None:
         raise InputError("a share was given", name, f"a share only for {' and '.join(MIXED)}")
     if name == "water":
-        return partial(water, pressure_bar=pressure_bar)
-    return partial(air, altitude_m=altitude_m) if name == "air" else PLAIN[name]
+        return partial(properties.water, pressure_bar=pressure_bar)
+    return partial(properties.air, altitude_m=altitude_m) if name == "air" else PLAIN[name]

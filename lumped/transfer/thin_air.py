@@ -12,21 +12,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from lumped.transfer.laws import (
-    CONSTANT,
-    Array,
-    FilmTable,
-    Fixed,
-    Inputs,
-    Law,
-    Power,
-    Scaled,
-    StreamTable,
-    Table,
-    TemperatureLaw,
-    WithTemperature,
-    Wrapped,
-)
+from geom.arrays import Array
+from lumped.transfer import laws
 from lumped.transfer.properties import air
 from lumped.transfer.streamed import Streamed
 
@@ -39,49 +26,51 @@ def density(altitude_m: float) -> float:
 
 
 @dataclass(frozen=True)
-class Slowed(Wrapped):
+class Slowed(laws.Wrapped):
     """Another law that sees some inputs `by` times as large."""
 
     by: float
     inputs: tuple[str, ...]
 
-    def factor(self, inputs: Inputs) -> Array | float:
+    def factor(self, inputs: laws.Inputs) -> Array | float:
         slower = {n: self.by * np.asarray(inputs[n], float) for n in self.inputs}
         return self.base.factor({**{n: inputs[n] for n in self.reads}, **slower})
 
 
-def thin_film(law: Law, rho: float, moving: Collection[str]) -> Law:
+def thin_film(law: laws.Law, rho: float, moving: Collection[str]) -> laws.Law:
     """A film in air of `rho` times its density.  moving : the inputs that move air"""
     if isinstance(law, Streamed):
         return replace(law, table=_thin_table(law.table, rho))
-    if isinstance(law, Wrapped):
+    if isinstance(law, laws.Wrapped):
         inner = replace(law, base=thin_film(law.base, rho, moving))
-        return replace(inner, temperature=_thin(law.temperature, rho)) if isinstance(inner, WithTemperature) else inner
-    if isinstance(law, Fixed) and law.temperature == CONSTANT:
-        return Scaled(law, rho**STILL)
-    thin: Law = law if law.temperature == CONSTANT else WithTemperature(law, _thin(law.temperature, rho))
-    if isinstance(law.temperature, Power):
-        thin = Scaled(thin, rho ** (2.0 * law.temperature.exponent))
+        if isinstance(inner, laws.WithTemperature):
+            return replace(inner, temperature=_thin(law.temperature, rho))
+        return inner
+    if isinstance(law, laws.Fixed) and law.temperature == laws.CONSTANT:
+        return laws.Scaled(law, rho**STILL)
+    thin: laws.Law = law if law.temperature == laws.CONSTANT else laws.WithTemperature(law, _thin(law.temperature, rho))
+    if isinstance(law.temperature, laws.Power):
+        thin = laws.Scaled(thin, rho ** (2.0 * law.temperature.exponent))
     movers = tuple(name for name in law.reads if name in moving)
     return Slowed(thin, rho, movers) if movers else thin
 
 
-def thin_stream(law: Law, rho: float) -> Law:
+def thin_stream(law: laws.Law, rho: float) -> laws.Law:
     """The heat capacity rate of a volume flow; where it divides anew at every flow, it does so by Reynolds number."""
-    return Scaled(WithTemperature(law, _thin(law.temperature, rho)), rho)
+    return laws.Scaled(laws.WithTemperature(law, _thin(law.temperature, rho)), rho)
 
 
-def _thin(law: TemperatureLaw, rho: float) -> TemperatureLaw:
-    if isinstance(law, StreamTable):
+def _thin(law: laws.TemperatureLaw, rho: float) -> laws.TemperatureLaw:
+    if isinstance(law, laws.StreamTable):
         return _thin_table(law, rho)
-    if isinstance(law, FilmTable):
+    if isinstance(law, laws.FilmTable):
         return _thin_film(law, rho)
-    if isinstance(law, Table) and law.difference[0] >= 0.0:
+    if isinstance(law, laws.Table) and law.difference[0] >= 0.0:
         return replace(law, difference=_over(law.difference, rho**2))
     return law
 
 
-def _thin_film(law: FilmTable, rho: float) -> FilmTable:
+def _thin_film(law: laws.FilmTable, rho: float) -> laws.FilmTable:
     holds = law.domain and replace(law.domain, low=_over(law.domain.low, rho**2), high=_over(law.domain.high, rho**2))
     return replace(law, difference=_over(law.difference, rho**2), domain=holds)
 
@@ -90,6 +79,6 @@ def _over(values: tuple[float, ...], by: float) -> tuple[float, ...]:
     return tuple(x / by for x in values)
 
 
-def _thin_table(law: StreamTable, rho: float) -> StreamTable:
+def _thin_table(law: laws.StreamTable, rho: float) -> laws.StreamTable:
     still = law.still and _thin_film(law.still, rho)
     return replace(law, shift=tuple(s - math.log(rho) for s in law.shift), still=still)

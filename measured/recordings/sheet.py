@@ -17,8 +17,7 @@ from lumped.schemas.bounds import TINY
 from lumped.schemas.reader import Table
 from lumped.transfer.laws import CLOCK
 from measured.recordings.data_table import twice
-from measured.recordings.electrical import QUANTITIES as ELECTRICAL
-from measured.recordings.electrical import Electrical, read_electrical
+from measured.recordings.electrical import QUANTITIES as ELECTRICAL, Electrical, read_electrical
 from measured.recordings.events import Events, read_events
 from measured.recordings.units import QUANTITIES, checked_input, checked_unit, converted, memory_quantity, usual_sigma
 

@@ -252,9 +252,8 @@ def _missing(column: Column, values: Array, file: Path, first: int, awake: NDArr
             f"{low:g} to {high:g}{unit}: check the unit in the sheet, or leave the cell empty where nothing was read",
         )
     rows = np.diff(np.flatnonzero(~np.isnan(values)))
-    slower = (
-        rows.size > LEAST and 1 < rows.min() >= rows.max() - 1
-    )  # a column that is recorded less often lacks nothing
+    # A column that is recorded less often lacks nothing
+    slower = rows.size > LEAST and 1 < rows.min() >= rows.max() - 1
     return missing[:0] if column.electrical or slower else missing
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from extras.bench.measuring.assemblies import assembly
+from extras.bench.measuring.curves import assembly
 from extras.bench.measuring.warming import eq8, equilibrium, fit_eq8
 from lumped.drives.drive import SeriesMachine
 from lumped.transfer.properties import ethylene_glycol

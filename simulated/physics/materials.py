@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import csv
 from collections.abc import Iterable
 from fnmatch import fnmatch
+from pathlib import Path
 
 from geom.description.machine import Machine
 from simulated.physics.conduction import Solid
@@ -12,29 +14,6 @@ from simulated.physics.draws import Draws
 # Relative change of the conductivity per K: copper and steel conduct worse when hot, resins better.
 SLOPES = {"steel": -4e-4, "electrical-steel": -4e-4, "aluminium-cast": 2e-4, "commutator": -2e-4, "bearing": 0.0}
 RESIN = 8e-4
-
-CONTACTS = (
-    ("housing|yoke", 870.0),
-    ("flange.*|housing", 2000.0),
-    ("flange.*|yoke", 2000.0),
-    ("poles|yoke", 2000.0),
-    ("field.insulation|*", 400.0),
-    ("winding.field|yoke", 200.0),
-    ("poles|winding.field", 200.0),
-    ("rotor.core|slot.liner", 400.0),
-    ("slot.liner|winding.armature", 400.0),
-    ("rotor.core|shaft", 4000.0),
-    ("commutator|shaft", 500.0),
-    ("commutator|winding.armature.right", 3000.0),
-    ("winding.armature|winding.armature.*", 50_000.0),
-    ("rotor.core|winding.armature*", 200.0),
-    ("slot.liner|winding.armature.*", 200.0),
-    ("bearing.*|shaft", 150.0),
-    ("bearing.*|flange.*", 1500.0),
-    ("feet|housing", 3000.0),
-    ("base|feet", 500.0),
-    ("*", 1000.0),
-)
 
 
 def solids(machine: Machine, draws: Draws) -> dict[str, Solid]:
@@ -53,8 +32,11 @@ def _solid(machine: Machine, part: str, common: float, draws: Draws) -> Solid:
 
 def contacts(names: Iterable[str], draws: Draws) -> dict[str, float]:
     """Conductance of every contact (W/m2/K)."""
-    return {name: draws.around(f"contact.{name}", nominal_contact(name), 0.30) for name in names}
+    return {name: draws.around(f"contact.{name}", nominal_contact("series-dc", name), 0.30) for name in names}
 
 
-def nominal_contact(name: str) -> float:
-    return next(value for pattern, value in CONTACTS if fnmatch(name, pattern))
+def nominal_contact(machine: str, name: str) -> float:
+    """W/m2/K of the first pattern in contacts.csv that fits."""
+    with Path(__file__).with_name("contacts.csv").open(encoding="utf-8", newline="") as file:
+        rows = [row for row in csv.DictReader(file) if row["machine"] == machine]
+    return next(float(row["W_m2K"]) for row in rows if fnmatch(name, row["contact"]))

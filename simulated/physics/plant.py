@@ -147,7 +147,12 @@ class Plant:
         return self.losses.resistance(float(np.dot(self.losses.ends, means)), self.mean("winding.field", T))
 
     def _solved(self, matrix: sparse.csr_matrix, rhs: Array, guess: Array) -> Array:
-        return _solve(matrix, rhs, guess)
+        """Conjugate gradients, scaled by the diagonal: capacity over a short step dominates the matrix."""
+        scale = sparse.diags(1 / matrix.diagonal())
+        T, failed = cg(matrix, rhs, guess, rtol=0.0, atol=TOLERANCE_W, maxiter=3000, M=scale)
+        if failed:
+            raise RuntimeError("the linear solver did not converge")
+        return T
 
     def _matrix(self, T: Array, diagonal: Array) -> sparse.csr_matrix:
         """Conduction plus a diagonal; conductivities follow the temperature in strides of 3 K."""
@@ -159,15 +164,6 @@ class Plant:
         full = matrix.copy()
         full.data[places] += diagonal
         return full
-
-
-def _solve(matrix: sparse.csr_matrix, rhs: Array, guess: Array) -> Array:
-    """Conjugate gradients, scaled by the diagonal: capacity over a short step dominates the matrix."""
-    scale = sparse.diags(1 / matrix.diagonal())
-    T, failed = cg(matrix, rhs, guess, rtol=0.0, atol=TOLERANCE_W, maxiter=3000, M=scale)
-    if failed:
-        raise RuntimeError("the linear solver did not converge")
-    return T
 
 
 def _with_diagonal(matrix: sparse.csr_matrix) -> tuple[sparse.csr_matrix, NDArray[np.int64]]:

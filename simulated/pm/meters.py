@@ -8,7 +8,6 @@ from numpy.typing import NDArray
 from simulated.physics.draws import Draws
 
 Array = NDArray[np.float64]
-BETA = 3.93e-3
 SHEETS = {"ohm": (0.25e-2, 2e-3, 2e-3), "volt": (0.1e-2, 1.0, 0.1)}  # gain, offset, step in ohm or V
 
 

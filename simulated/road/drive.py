@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
@@ -62,51 +63,6 @@ class Overpass:
 
 
 STAND_PLAN = ((15, 1000, 38.0), (12, 700, 30.0), (13, 1200, 38.0), (8, 500, 15.0), (12, 1000, 38.0))  # min, rpm, A
-# minutes, km/h
-ROAD_1 = (
-    (4, 45),
-    (0.5, 0),
-    (5, 48),
-    (0.7, 0),
-    (6, 42),
-    (0.5, 0),
-    (3, 30),
-    (5, 50),
-    (0.6, 0),
-    (5, 46),
-    (0.5, 0),
-    (4, 40),
-    (6, 50),
-    (0.8, 0),
-    (5, 44),
-    (0.5, 0),
-    (5, 48),
-    (0.4, 0),
-    (4, 45),
-    (0.5, 0),
-    (3, 42),
-)
-ROAD_2 = (
-    (2, 25),
-    (0.8, 0),
-    (3, 32),
-    (1, 0),
-    (2, 28),
-    (0.7, 0),
-    (3, 35),
-    (1.2, 0),
-    (14, 62),
-    (0.5, 0),
-    (4, 40),
-    (7, 0),
-    (3, 50),
-    (0.5, 0),
-    (6, 35),
-    (0.8, 0),
-    (8, 58),
-    (1, 0),
-    (2.5, 30),
-)
 
 
 def stand(draws: Draws, name: str, ambient: float, warm: float) -> Drive:
@@ -123,12 +79,10 @@ def stand(draws: Draws, name: str, ambient: float, warm: float) -> Drive:
     return _surroundings(draws, name, Drive(current, speed, still, still, still, ambient + warm), ambient, 1.0)
 
 
-def road(
-    draws: Draws, name: str, plan: tuple[tuple[float, float], ...], bridge: Overpass, ambient: float, warm: float
-) -> Drive:
-    """The road: a driver follows the plan's speeds; mass, drag and route are the vehicle's."""
+def road(draws: Draws, name: str, bridge: Overpass, ambient: float, warm: float) -> Drive:
+    """The road: a driver follows the speeds of NAME.csv; mass, drag and route are the vehicle's."""
     random = draws.stream(f"{name}.driver")
-    v = _follow(plan, random)
+    v = _follow(np.loadtxt(Path(__file__).with_name(f"{name}.csv"), delimiter=",", skiprows=1), random)
     slope = bridge.slope(np.cumsum(v))
     current = Vehicle().current(v, np.gradient(v), slope)
     still = np.zeros(SECONDS)
@@ -137,11 +91,14 @@ def road(
     )
 
 
-def _follow(plan: tuple[tuple[float, float], ...], random: np.random.Generator) -> Array:
-    """Speed (m/s) of a driver who closes in on the target within 5 s, at no more than 0.7 up and 1.1 m/s2 down."""
-    ends = np.cumsum([minutes * 60 for minutes, _ in plan])
+def _follow(plan: Array, random: np.random.Generator) -> Array:
+    """Speed (m/s) of a driver who closes in on the target within 5 s, at no more than 0.7 up and 1.1 m/s2 down.
+
+    plan : (n, 2) minutes and km/h
+    """
+    ends = np.cumsum(plan[:, 0] * 60)
     at = np.minimum(np.searchsorted(ends * SECONDS / ends[-1], np.arange(SECONDS), side="right"), len(plan) - 1)
-    target = np.array([kmh / 3.6 for _, kmh in plan])[at]
+    target = (plan[:, 1] / 3.6)[at]
     target = np.where(target > 0, target + _wander(random, 0.5, 40.0), 0.0)
     v = np.zeros(SECONDS)
     for i in range(1, SECONDS):
@@ -185,6 +142,6 @@ def drives(draws: Draws) -> dict[str, Drive]:
         "stand-1": stand(draws, "stand-1", 19.6, 0.4),
         "stand-2": stand(draws, "stand-2", 22.8, 2.3),
         "stand-3": stand(draws, "stand-3", 21.3, 1.1),
-        "road-1": road(draws, "road-1", ROAD_1, Overpass(3300.0, 350.0, 1500.0), 23.8, 0.6),
-        "road-2": road(draws, "road-2", ROAD_2, Overpass(5200.0, 500.0, 3100.0), 11.5, 1.4),
+        "road-1": road(draws, "road-1", Overpass(3300.0, 350.0, 1500.0), 23.8, 0.6),
+        "road-2": road(draws, "road-2", Overpass(5200.0, 500.0, 3100.0), 11.5, 1.4),
     }

@@ -7,7 +7,7 @@ from fem.matrices.assembly import assemble
 from fem.matrices.bends import Bends, edge_table
 from fem.matrices.grids import box
 from fem.matrices.material import isotropic
-from fem.solvers.linear_losses import linear_losses
+from fem.solvers.bending_edges import linear_losses
 from fem.solvers.solve import Solver, only_fixed, steady
 
 K, Q, HOT, H = 0.8, 2e5, 20.0, 1e9

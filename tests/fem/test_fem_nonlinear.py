@@ -1,4 +1,4 @@
-"""Radiation, conductivity and copper loss that depend on temperature: closed forms, Newton's order, energy."""
+"""Radiation and copper loss that depend on temperature: closed forms, Newton's order, energy."""
 
 from importlib import import_module
 from inspect import getmembers, isclass
@@ -13,7 +13,7 @@ import fem
 from fem.matrices.assembly import assemble
 from fem.matrices.grids import box
 from fem.matrices.material import isotropic
-from fem.matrices.terms import CopperLoss, Radiation, Term, VaryingConductivity
+from fem.matrices.terms import CopperLoss, Radiation, Term
 from fem.solvers import newton
 from fem.solvers.newton import solve_nonlinear
 from fem.solvers.solve import Iterative, Solver, only_fixed
@@ -67,27 +67,6 @@ def test_radiation_balance_of_a_hot_body():
     assert found.energy_balance < 1e-9
 
 
-def kirchhoff(n):
-    """Slab with k = k0 (1 + b T): theta = T + b T^2 / 2 is linear between the ends. Largest error and result."""
-    k0, b, hot, cold = 12.0, 0.004, 300.0, 50.0
-    field = assemble(bar(0.05, n), {"bar": isotropic(k0)}, {"bar": 1.0})
-    term = VaryingConductivity("bar", lambda T: 1 + b * T, lambda T: np.full(len(T), b))
-    given = only_fixed(left=hot, right=cold)
-    films = {"bar.left": GIVEN, "bar.right": GIVEN}
-    found = solve_nonlinear(Solver(field), films, {}, np.zeros(field.n), given, [term])
-    theta = np.interp(field.xyz[:, 0], [0, 0.05], [t + b * t**2 / 2 for t in (hot, cold)])
-    return np.abs(found.T - (np.sqrt(1 + 2 * b * theta) - 1) / b).max(), found
-
-
-def test_conductivity_that_grows_with_temperature():
-    coarse, (error, found) = kirchhoff(8)[0], kirchhoff(16)
-    assert error < 2e-4 * 250
-    assert np.log2(coarse / error) > 1.9
-    assert order(found.steps) == pytest.approx(2.0, abs=0.2)
-    through = 12.0 * (250 + 0.004 * (300**2 - 50**2) / 2) / 0.05 * (0.05 / 16) ** 2
-    assert abs(found.removed) < 1e-7 * through
-
-
 def copper_bar(q, n=32):
     """Loss q (W/m3) (1 + alpha (T - 20)), one end at 40 degC, the other insulated: T - 20 + 1 / alpha is a cosine."""
     L, k, alpha = 0.05, 0.6, 0.00393
@@ -127,12 +106,7 @@ def warm_cube():
         x, x, x, lambda c: named(c, (c[:, 0] < 0.05, "coil"), default="iron"), lambda c: named(c, default="ambient")
     )
     field = assemble(mesh, {"coil": isotropic(1.0), "iron": isotropic(30.0)}, {"coil": 3e6, "iron": 3.6e6})
-    terms = [
-        CopperLoss("coil", 40.0),
-        VaryingConductivity("iron", lambda T: 1 - 5e-4 * (T - 20), lambda T: np.full(len(T), -5e-4)),
-        Radiation("coil.outer", 0.9, 20.0),
-        Radiation("iron.outer", 0.5, 20.0),
-    ]
+    terms = [CopperLoss("coil", 40.0), Radiation("coil.outer", 0.9, 20.0), Radiation("iron.outer", 0.5, 20.0)]
     films, contacts = {"coil.outer": 5.0, "iron.outer": 8.0}, {"coil|iron": 500.0}
     return Solver(field), films, contacts, 10.0 * field.load("iron"), only_fixed(ambient=20.0), terms
 
@@ -157,16 +131,9 @@ def test_unphysical_terms_are_refused():
     field = assemble(bar(0.1, 2), {"bar": isotropic(1.0)}, {"bar": 1.0})
     with pytest.raises(InputError, match="unknown face 'x'"):
         Radiation("x", 0.3, 20.0).heat(field, np.zeros(field.n))
-    falling = VaryingConductivity("bar", lambda T: 1 - T, lambda T: np.full(len(T), -1.0))
-    with pytest.raises(InputError, match="conductivity falls"):
-        falling.heat(field, np.full(field.n, 2.0))
 
 
-TERMS = [
-    Radiation("bar.left", 0.7, 30.0),
-    CopperLoss("bar", 3.0),
-    VaryingConductivity("bar", lambda T: 1 + 1e-5 * T**2, lambda T: 2e-5 * T),
-]
+TERMS = [Radiation("bar.left", 0.7, 30.0), CopperLoss("bar", 3.0)]
 
 
 def test_every_term_is_tried():
@@ -194,15 +161,11 @@ def test_a_slope_is_the_derivative(term):
 
 @pytest.mark.parametrize(
     ("term", "watts"),
-    [
-        (TERMS[0], 0.7 * SIGMA * 1e-4 * (333.15**4 - 303.15**4)),
-        (TERMS[1], -3.0 * (1 + ALPHA_CU * 40.0)),
-        (TERMS[2], 0.0),
-    ],
+    [(TERMS[0], 0.7 * SIGMA * 1e-4 * (333.15**4 - 303.15**4)), (TERMS[1], -3.0 * (1 + ALPHA_CU * 40.0))],
     ids=lambda x: type(x).__name__,
 )
 def test_a_term_takes_what_it_says_at_one_temperature(term, watts):
-    """60 degC throughout: what a face radiates, what a winding makes; conduction moves nothing."""
+    """60 degC throughout: what a face radiates, what a winding makes."""
     field = assemble(bar(0.1, 3, 0.01), {"bar": isotropic(2.0)}, {"bar": 1.0})
     assert term.heat(field, np.full(field.n, 60.0)).sum() == pytest.approx(watts, rel=1e-12, abs=1e-12)
 

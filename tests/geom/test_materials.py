@@ -1,8 +1,7 @@
 """The material table and the homogenised winding."""
 
 import pytest
-from hypothesis import given
-from hypothesis import strategies as st
+from hypothesis import given, strategies as st
 
 from geom import InputError, material, material_table, winding_conductivity
 from geom.description.materials import K_AIR

@@ -5,8 +5,7 @@ from functools import partial
 
 import pytest
 import shapely
-from hypothesis import HealthCheck, assume, given, settings
-from hypothesis import strategies as st
+from hypothesis import HealthCheck, assume, given, settings, strategies as st
 
 from geom import InputError, check_cad
 from geom.description.profile import ArcGrid

@@ -7,8 +7,7 @@ import numpy as np
 from geom.description.machine import Machine
 from geom.description.part import Part
 from geom.description.roles import Role, identity
-from geom.description.shapes import disc
-from geom.description.shapes import ring as annulus
+from geom.description.shapes import disc, ring as annulus
 from geom.meshing.mesh import NamedMesh
 
 RADII = np.array([0.0, 0.03, 0.09, 0.115, 0.12, 0.155, 0.20, 0.22])

@@ -4,11 +4,10 @@ import numpy as np
 import pytest
 
 from simulated.physics.draws import Draws
+from simulated.physics.materials import nominal_contact
 from simulated.physics.surfaces import Conditions
-from simulated.pm import files as pm_files
-from simulated.pm import films as pm_films
-from simulated.pm import meters as pm_meters
-from simulated.pm.plant import contacts, nominal_contact
+from simulated.pm import files as pm_files, meters as pm_meters
+from simulated.pm.plant import contacts, draw
 
 AT_REST = Conditions(8.0, 64.0, 0.0, 0.0, 0.0, 20.0)
 
@@ -46,7 +45,7 @@ def test_films_of_still_air():
         class stator:  # noqa: N801
             outer_diameter, bore_diameter, air_gap = 0.27, 0.174, 1e-3
 
-    films = pm_films.draw(Draws(3), Geometry, "bench")
+    films = draw(Draws(3), Geometry, "bench")
     T = np.array([60.0])
     body = float(films.coefficient("stator.core", "ambient", T, 20.0, AT_REST)[0])
     base = float(films.coefficient("base", "ambient", T, 20.0, AT_REST)[0])
@@ -59,7 +58,7 @@ def test_films_of_still_air():
 def test_both_ends_are_alike_and_draws_belong_to_their_names():
     found = contacts(["bearing.left|shaft", "bearing.right|shaft", "base|foot"], Draws(31))
     assert found["bearing.left|shaft"] == found["bearing.right|shaft"]
-    assert nominal_contact("base|foot") == 500.0
+    assert nominal_contact("pm", "base|foot") == 500.0
     assert found == contacts(["base|foot", "bearing.right|shaft", "bearing.left|shaft"], Draws(31))
 
 

@@ -46,9 +46,8 @@ def digest(*pieces: object) -> str:
 def case_key(folder: CaseWithFiles) -> str:
     """Of everything that decides: the case's files, its recordings, the machine, and what was calibrated."""
     settings, model = folder.settings, folder.case.model
-    sheets = {
-        sheet for e in settings.tests if e.sheet for sheet in Path(e.sheet).parent.glob("*.toml")
-    }  # and columns_of
+    # Those of columns_of as well
+    sheets = {sheet for e in settings.tests if e.sheet for sheet in Path(e.sheet).parent.glob("*.toml")}
     files = [settings.path / "case.toml", settings.network, *(e.file for e in settings.tests), *sorted(sheets)]
     texts = [Path(file).read_bytes() for file in files if file is not None and Path(file).is_file()]
     machine = () if folder.built is None else (folder.built.machine.sections, folder.built.mesh.points)
@@ -75,7 +74,7 @@ def result_key(folder: CaseWithFiles, *rooms: str) -> str:
 
 @cache
 def code_digest(*rooms: str) -> bytes:
-    """A digest of all modules of these packages, and of those that hold what other packages add."""
+    """A digest of all modules and tables of these packages, and of those that hold what other packages add."""
     content = hashlib.sha256()
     for file in [*_modules(rooms), *_added()]:
         content.update(file.read_bytes())
@@ -86,7 +85,7 @@ def _modules(rooms: tuple[str, ...]) -> Iterator[Path]:
     for room in rooms:
         spec = find_spec(room)
         for home in (spec and spec.submodule_search_locations) or ():
-            yield from sorted(Path(home).rglob("*.py"))
+            yield from sorted(file for file in Path(home).rglob("*.*") if file.suffix in (".py", ".csv"))
 
 
 def _added() -> Iterator[Path]:

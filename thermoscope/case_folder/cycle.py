@@ -194,11 +194,9 @@ def _duty(top: Table) -> tuple[Array, dict[str, Array], dict[str, Array]]:
     else:
         period, part, cycles = t.number("period_s"), t.number("duty_percent") / 100, int(t.number("cycles"))
         of = (period * cycles,)
-        duty = (
-            partial(s3, period, part, cycles)
-            if kind == "S3"
-            else partial(s6, period, part, cycles, t.number("no_load"))
-        )
+        duty = partial(s3, period, part, cycles)
+        if kind != "S3":
+            duty = partial(s6, period, part, cycles, t.number("no_load"))
         _counted(4.0 * cycles, t.where)
     _counted(max(sum(of) / step, LEAST), t.where)
     time, share = duty(step=step)

@@ -168,9 +168,8 @@ def load_case(
 
 
 READ = 32  # recordings that a process keeps: a command, or the demo, works on one case
-LARGE = (
-    2**22
-)  # cells of a recording that no process keeps (32 MB): a million rows would stay beside all that is made of them
+# Cells of a recording that no process keeps (32 MB): a million rows would stay beside all that is made of them
+LARGE = 2**22
 _read: dict[tuple, Samples] = {}  # by sheet and files: nothing that is asked for has changed
 
 

@@ -353,8 +353,7 @@ def timed_lines(
 @contextmanager
 def _bar(stages: ProgressBar, console: Console) -> Iterator[Progress]:
     """A bar that moves with the clock; a message that is too long for the line is cut, its times never."""
-    from rich.progress import BarColumn, ProgressColumn, TextColumn, TimeElapsedColumn
-    from rich.progress import Progress as Bar
+    from rich.progress import BarColumn, Progress as Bar, ProgressColumn, TextColumn, TimeElapsedColumn
     from rich.table import Column
     from rich.text import Text
 

@@ -17,24 +17,11 @@ from lumped.integration.simulate import Record, Stand, simulate
 from lumped.model.network import Network, Parameter
 from lumped.model.once import once
 from measured.case import Test
-from measured.sensors.operators import (
-    OPERATORS,
-    SHIFTS,
-    Memory,
-    Stretch,
-    While,
-    head,
-    moved,
-    setting,
-    shifted,
-    start_target,
-    starts,
-    stretch_of,
-)
+from measured.sensors import operators
 from validation.effects.time_window import IN, holds, lasts
 
-MOVING = tuple(f"{kind}:" for kind in SHIFTS)
-SENSORS = tuple(f"{kind}:" for kind in OPERATORS if kind != "swap")
+MOVING = tuple(f"{kind}:" for kind in operators.SHIFTS)
+SENSORS = tuple(f"{kind}:" for kind in operators.OPERATORS if kind != "swap")
 CACHED_NUMBERS = 100_000  # of a run whose readings are cached: a clock or a sensor that differs needs no new one
 MARGIN = 40  # samples on either side of a stretch after which a spline no longer feels where it was cut
 
@@ -50,7 +37,7 @@ class Prediction:
 @once
 def thermal(network: Network) -> Network:
     """The network with only the parameters that act on heat."""
-    return replace(network, parameters=tuple(p for p in network.parameters if head(p) == "thermal"))
+    return replace(network, parameters=tuple(p for p in network.parameters if operators.head(p) == "thermal"))
 
 
 def heat_model(network: Network, values: Mapping[str, float]) -> tuple[Network, dict[str, float]]:
@@ -82,7 +69,7 @@ def stretch_of_record(test: Test, shift: Mapping[str, float], some: slice) -> Re
     boundaries = {n: u + sum(a for target, a in shift.items() if moves(target, n, test)) for n, u in air.items()}
     move, initial = shift.get(f"initial:{test.name}", 0.0), test.initial
     start = {k: v + move for k, v in initial.items()} if isinstance(initial, Mapping) else initial + move
-    here = start_target(test.name, "")
+    here = operators.start_target(test.name, "")
     above = {t.removeprefix(here): a for t, a in shift.items() if t.startswith(here)}
     return Record(test.time[some], test.signals.part(some), boundaries, start, above)
 
@@ -178,17 +165,19 @@ class Watch:
         precision: Precision = READINGS,
     ) -> None:
         self.network, self.test, self.tangents = network, test, tangents
-        self.now, self.done, self.memory = setting(network.parameters, values), 0, Memory()
-        (bare, heat), self.heads = heat_model(network, values), [head(p) for p in tangents]
+        self.now, self.done, self.memory = operators.setting(network.parameters, values), 0, operators.Memory()
+        (bare, heat), self.heads = heat_model(network, values), [operators.head(p) for p in tangents]
         each = list(enumerate(zip(tangents, self.heads, strict=True)))
         hot = [i for i, (_, kind) in each if kind == "thermal"]
-        shift_of = {i: _shift(network, test, p) for i, (p, kind) in each if kind in SHIFTS and _felt(network, test, p)}
+        shift_of = {
+            i: _shift(network, test, p) for i, (p, kind) in each if kind in operators.SHIFTS and _felt(network, test, p)
+        }
         self.hot = [*hot, *shift_of]
         moving = [tangents[i] for i in hot], list(shift_of.values())
         self.course = Course(bare, test, heat, self.now, *moving, precision)
         every = {*self.now, *(target for p in tangents for target, _ in p.targets)}
         self.whiles = {
-            target: While.of(*channel_of(target), test.time, holds(target.rpartition(IN)[2], test))
+            target: operators.While.of(*channel_of(target), test.time, holds(target.rpartition(IN)[2], test))
             for target in every
             if IN in target and target.startswith(SENSORS)
         }
@@ -198,7 +187,7 @@ class Watch:
         """Readings and derivatives from where the last look ended to sample `stop`."""
         some = slice(max(self.done - 1, 0), stop)
         self.around = self._around(some)
-        look = stretch_of(self.network, self.test, some, self.memory, self.whiles)
+        look = operators.stretch_of(self.network, self.test, some, self.memory, self.whiles)
         T, dT = self.course.over(self.around)
         late = self._late(T, some, self.now)
         y = look.read(late, self.now)
@@ -206,7 +195,7 @@ class Watch:
         if self.hot:
             J[:, :, self.hot] = look.read(self._late(dT, some, self.now), self.now, "heat", linear=True)
         for i, kind in enumerate(self.heads):
-            if kind in OPERATORS:
+            if kind in operators.OPERATORS:
                 J[:, :, i] = self._operator(look, T, late, y, some, i)
         fresh, self.done = self.done - some.start, stop
         return Prediction(y[fresh:], J[fresh:])
@@ -226,11 +215,11 @@ class Watch:
         T = softened(T, self.spread)
         if not delay:
             return T[some.start - self.around.start : some.stop - self.around.start]
-        return shifted(time[self.around], T, delay, time[some], (float(time[0]), float(time[-1])))
+        return operators.shifted(time[self.around], T, delay, time[some], (float(time[0]), float(time[-1])))
 
-    def _operator(self, look: Stretch, T: Array, late: Array, y: Array, some: slice, i: int) -> Array:
+    def _operator(self, look: operators.Stretch, T: Array, late: Array, y: Array, some: slice, i: int) -> Array:
         """Tangent by a step of what the i-th parameter acts on. T: around, late: with the delay, y: as read."""
-        now, step = moved(self.now, self.tangents[i])
+        now, step = operators.moved(self.now, self.tangents[i])
         if self.heads[i] == "delay":
             return (look.read(self._late(T, some, now), now, f"step {i}") - y) / step
         if any(key.startswith("swap:") for key in now):
@@ -260,12 +249,12 @@ def softened(T: Array, spread: float) -> Array:
 def _shift(network: Network, test: Test, p: Parameter) -> str | None:
     """The boundary that a parameter offsets, the state whose start it offsets, None for the start of all."""
     target = p.targets[0][0]
-    if target.startswith(start_target(test.name, "")):
-        return target.removeprefix(start_target(test.name, ""))
+    if target.startswith(operators.start_target(test.name, "")):
+        return target.removeprefix(operators.start_target(test.name, ""))
     return next((b for b in network.boundaries if moves(target, b, test)), None)
 
 
 def _felt(network: Network, test: Test, p: Parameter) -> bool:
     """Is the boundary one of the network's and of this test's, or the start this test's?"""
     target, both = p.targets[0][0], [b for b in network.boundaries if b in test.boundaries]
-    return starts(target, test.name) or any(moves(target, b, test) for b in both)
+    return operators.starts(target, test.name) or any(moves(target, b, test) for b in both)

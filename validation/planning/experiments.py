@@ -11,20 +11,12 @@ from validation.comparison.linearisation import segments
 from validation.inference.evidence import Evidence
 from validation.inference.result import Experiment
 from validation.inference.score import gram
+from validation.planning import rivals
 from validation.planning.candidate_tests import Experiment as Candidate
 from validation.planning.permissible_current import current_levels, heat_limits, permissible_tests
-from validation.planning.rivals import (
-    CompetingModels,
-    Plan,
-    predicted_readings,
-    refitted_gains,
-    separable_pairs,
-    separation,
-    widened_error,
-)
 
 
-def next_tests(evidence: Evidence, models: CompetingModels) -> list[Experiment]:
+def next_tests(evidence: Evidence, models: rivals.CompetingModels) -> list[Experiment]:
     """Tests that separate the group, best gain per hour first.
 
     Gain: the smallest deviance, over all pairs, by which the wrong one would fit worse with the new test added.
@@ -37,26 +29,27 @@ def next_tests(evidence: Evidence, models: CompetingModels) -> list[Experiment]:
         Experiment(
             "test",
             p.what,
-            separable_pairs(evidence, p.gaps),
+            rivals.separable_pairs(evidence, p.gaps),
             p.gain,
             p.hours,
             currents=current_levels(candidates[p.what][1], before, network),
             current_factor=candidates[p.what][0].current_factor,
         )
-        for p in refitted_gains(evidence, models, _planned(evidence, models, candidates))
+        for p in rivals.refitted_gains(evidence, models, _planned(evidence, models, candidates))
     ]
 
 
 def _planned(
-    evidence: Evidence, models: CompetingModels, candidates: Mapping[str, tuple[Candidate, Test]]
-) -> Iterator[Plan]:
+    evidence: Evidence, models: rivals.CompetingModels, candidates: Mapping[str, tuple[Candidate, Test]]
+) -> Iterator[rivals.Plan]:
     fit = evidence.fit
     p, columns = fit.theta.size, (*fit.unknowns.parameters, *(evidence.parameters[k] for k in models.group))
     for experiment, plan in candidates.values():
         try:
-            test = predicted_readings(models.best, plan)
-            parts, error = segments(evidence.network, [test], fit.values, columns), widened_error(evidence, [test])
+            test = rivals.predicted_readings(models.best, plan)
+            parts = segments(evidence.network, [test], fit.values, columns)
+            error = rivals.widened_error(evidence, [test])
         except ThermoscopeError:  # a model that lacks what cools it runs away in a test that is longer than its own
             continue
         (more,) = gram(parts, fit.noise, p, error).values()
-        yield Plan(experiment.name, experiment.hours, [test], separation(evidence, models, more))
+        yield rivals.Plan(experiment.name, experiment.hours, [test], rivals.separation(evidence, models, more))

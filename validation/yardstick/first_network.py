@@ -23,16 +23,7 @@ from geom.one_thread import one_blas_thread
 from lumped.model.quantities import FLOWS
 from measured.case import Case
 from measured.importing.starter import FirstNetwork, FirstTerm
-from validation.yardstick.free_network import (
-    Form,
-    FreeNetwork,
-    NetworkLessons,
-    Powers,
-    link_powers,
-    loss_factors,
-    loss_powers,
-    nonnegative,
-)
+from validation.yardstick import free_network
 from validation.yardstick.records import Columns, Record
 from validation.yardstick.yardstick import best_free_network, error_of, folds_of, rms
 
@@ -68,7 +59,7 @@ def learn_network(case: Case, first: FirstNetwork) -> FirstNetwork:
     form = best_free_network(folds, columns)
     places = {c.name: c.place for t in case.tests for c in t.channels}
     every_test = _TermTable.of(folds, columns, form, places, case.model.network.measures)
-    heat = np.mean([loss_factors(r.u).mean(axis=0) for fold in folds for r in fold], axis=0)
+    heat = np.mean([free_network.loss_factors(r.u).mean(axis=0) for fold in folds for r in fold], axis=0)
     every = range(len(folds))
     needed, table, left_out = _least_terms(every_test.credible(), folds)
     while (fewer := _without_odd(table, folds, left_out)) is not None:
@@ -231,28 +222,28 @@ class _TermTable:
     """
 
     nodes: tuple[str, ...]
-    candidates: list[tuple[tuple[str, ...], Powers]]
+    candidates: list[tuple[tuple[str, ...], free_network.Powers]]
     rows: list[tuple[NDArray[np.intp], NDArray[np.intp]]]
     normal: list[list[Array]]
     weight: Array
     sensors: tuple[int, ...]
     bodies: NDArray[np.intp]
     shape: tuple[int, int, int]
-    form: Form
+    form: free_network.Form
     credit: Array
 
     @staticmethod
     def of(
         folds: Sequence[Sequence[Record]],
         columns: Columns,
-        form: Form,
+        form: free_network.Form,
         places: Mapping[str, str],
         measures: Callable[[str], str],
     ) -> _TermTable:
-        lessons = NetworkLessons.of(folds, columns, form)
+        lessons = free_network.NetworkLessons.of(folds, columns, form)
         first = {places[s]: i for i, s in reversed(list(enumerate(columns.sensors)))}  # a node is its first sensor
         nodes = [s for i, s in enumerate(columns.sensors) if first[places[s]] == i]
-        links, losses = link_powers(columns.inputs, form.shapes), loss_powers(columns.inputs)
+        links, losses = free_network.link_powers(columns.inputs, form.shapes), free_network.loss_powers(columns.inputs)
         stirs = [may_stir([measures(f.input) for f in of]) for of in links]
         quantities = {measures(name) for name in columns.inputs}
         heats = [may_heat([measures(f.input) for f in of], quantities) for of in losses]
@@ -260,7 +251,7 @@ class _TermTable:
             *(s for s, steady in zip(columns.sensors, columns.steady, strict=True) if steady),
             *columns.boundaries,
         ]
-        number: dict[tuple[tuple[str, ...], Powers], int] = {}
+        number: dict[tuple[tuple[str, ...], free_network.Powers], int] = {}
         rows = []
         for sensor in nodes:
             node = places[sensor]
@@ -313,7 +304,7 @@ class _TermTable:
             for (N, b, term), w, c in zip(parts, self.weight, C, strict=True):
                 AA[np.ix_(term, term)] += N * (w / c**2)
                 Ab[term] += b * (w / c)
-            a = nonnegative(AA, Ab, a)
+            a = free_network.nonnegative(AA, Ab, a)
             new = np.array([_capacity(N, b, a[term], c) for (N, b, term), c in zip(parts, C, strict=True)])
             new /= np.exp(np.mean(np.log(new)))
             if np.allclose(new, C, rtol=STILL):
@@ -354,14 +345,14 @@ class _TermTable:
             np.maximum.at(out, term, size / max(float(size.sum()), 1e-300))
         return out
 
-    def free(self, theta: Array, C: Array) -> FreeNetwork:
+    def free(self, theta: Array, C: Array) -> free_network.FreeNetwork:
         """The same network node by node, per capacity."""
         bodies, factors, k = self.shape
         links, sources = np.zeros((len(self.sensors), bodies, factors)), np.zeros((len(self.sensors), k))
         for n, sensor in enumerate(self.sensors):
             row = self._row(sensor, theta) / C[sensor]
             links[n, self.bodies], sources[n] = row[:-k].reshape(-1, factors), row[-k:]
-        return FreeNetwork(self.form, links, sources)
+        return free_network.FreeNetwork(self.form, links, sources)
 
     def mean_heat(self, theta: Array, heat: Array) -> float:
         """All losses together.  heat : (n_loss,) mean of each loss's factor"""
@@ -423,5 +414,5 @@ def _weights(normal: Sequence[Sequence[Array]]) -> Array:
 
 def _misfit(N: Array, others: Array) -> float:
     """Sum of squares (K2) that a free fit to some windows leaves of others, or of the same."""
-    a = nonnegative(others[:-1, :-1], others[:-1, -1])
+    a = free_network.nonnegative(others[:-1, :-1], others[:-1, -1])
     return float(N[-1, -1] - 2.0 * a @ N[:-1, -1] + a @ N[:-1, :-1] @ a)

@@ -164,10 +164,8 @@ class NetworkLessons:
     def fit(self, lessons: Sequence[int]) -> FreeNetwork:
         """The network learnt from some folds."""
         k, steady = len(self.columns.sensors), np.flatnonzero(self.columns.steady)
-        bodies, factors = (
-            steady.size + len(self.columns.boundaries),
-            1 + len(self.form.shapes) * len(self.columns.inputs),
-        )
+        bodies = steady.size + len(self.columns.boundaries)
+        factors = 1 + len(self.form.shapes) * len(self.columns.inputs)
         where = np.append(steady, k + np.arange(len(self.columns.boundaries)))
         links, sources = np.zeros((k, k + len(self.columns.boundaries), factors)), []
         for n in range(k):

@@ -9,14 +9,7 @@ import numpy as np
 
 from geom.arrays import Array
 from measured.case import Case
-from validation.yardstick.free_network import (
-    FreeNetwork,
-    link_factors,
-    link_powers,
-    loss_factors,
-    loss_powers,
-    power_words,
-)
+from validation.yardstick import free_network
 from validation.yardstick.records import Columns, Record
 
 SHARE = 0.05  # of all that warms and cools a sensor: what carries less is not worth a name
@@ -55,7 +48,7 @@ def needed_terms(
     every = range(len(folds))
     whole = fit(every)
     parts = [fit([j for j in every if j != i]) for i in every]
-    assert isinstance(whole, FreeNetwork)
+    assert isinstance(whole, free_network.FreeNetwork)
     share = _shares(whole, [r for fold in folds for r in fold])
     names, places = _term_names(whole, columns), {c.name: c.place for t in case.tests for c in t.channels}
     values, others = _vector(whole), np.array([_vector(p) for p in parts])  # type: ignore[arg-type]
@@ -83,23 +76,23 @@ def needed_terms(
     return tuple(sorted(out, key=lambda term: -term.share))
 
 
-def _vector(network: FreeNetwork) -> Array:
+def _vector(network: free_network.FreeNetwork) -> Array:
     """(n_sensor, n_term): links body by body and factor by factor, then sources."""
     return np.hstack([network.links.reshape(len(network.links), -1), network.sources])
 
 
-def _term_names(network: FreeNetwork, columns: Columns) -> list[tuple[str, str, str]]:
+def _term_names(network: free_network.FreeNetwork, columns: Columns) -> list[tuple[str, str, str]]:
     """Kind, other end and input of every term, as `_vector` orders them."""
-    powers = [power_words(of) for of in link_powers(columns.inputs, network.form.shapes)]
+    powers = [free_network.power_words(of) for of in free_network.link_powers(columns.inputs, network.form.shapes)]
     links = [("link", body, of) for body in (*columns.sensors, *columns.boundaries) for of in powers]
-    return [*links, *(("loss", "", power_words(of)) for of in loss_powers(columns.inputs))]
+    return [*links, *(("loss", "", free_network.power_words(of)) for of in free_network.loss_powers(columns.inputs))]
 
 
-def _shares(network: FreeNetwork, records: Sequence[Record]) -> Array:
+def _shares(network: free_network.FreeNetwork, records: Sequence[Record]) -> Array:
     """(n_sensor, n_term): mean size of what each term carries, over the sum of a sensor's."""
     size = np.zeros_like(_vector(network))
     for record in records:
-        x, y = link_factors(record.u, network.form.shapes), loss_factors(record.u)
+        x, y = free_network.link_factors(record.u, network.form.shapes), free_network.loss_factors(record.u)
         bodies = np.hstack([record.T, record.boundary])
         for n in range(len(size)):
             flow = np.abs(bodies - record.T[:, [n]])[:, :, None] * x[:, None, :]

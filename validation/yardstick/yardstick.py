@@ -21,24 +21,15 @@ from lumped.model.once import once
 from measured.case import Case
 from validation.yardstick.black_box import BlackBoxLessons
 from validation.yardstick.free_network import Form, FreeNetwork, NetworkLessons, Shape
-from validation.yardstick.persistence import usual_rise
 from validation.yardstick.records import Columns, Record, row_step, table_columns, table_record
 from validation.yardstick.terms import Term, needed_terms
 
 WINDOWS = (1 / 200, 1 / 40, 1 / 13, 2 / 9)  # of a test: short ones drown in noise, long ones in what happens in them
 LINE, SQUARE = (1.0, 0.0), (2.0, 0.0)
-POWERS = (
-    (),
-    (LINE,),
-    (LINE, SQUARE),
-)  # of an input that a link follows: not at all, as films in ducts do, as fans work
-SHAPES = (
-    ((0.5, 0.0),),
-    (SQUARE,),
-    ((1.0, 0.25),),
-    ((1.0, 0.5),),
-    ((1.0, 0.75),),
-)  # in place of a line: two regimes too
+# Of an input that a link follows: not at all, as films in ducts do, as fans work
+POWERS = ((), (LINE,), (LINE, SQUARE))
+# In place of a line: two regimes too
+SHAPES = (((0.5, 0.0),), (SQUARE,), ((1.0, 0.25),), ((1.0, 0.5),), ((1.0, 0.75),))
 RIDGES = (1e-9, 1e-6, 1e-4, 1e-2)  # over the diagonal: from none to one that shrinks all but what is plain
 THIRDS = 3  # stretches of the only test: two teach, one is predicted
 MOST_FOLDS = 12  # of many tests so many shares are left out in turn: each fit costs as much as that many tests
@@ -129,11 +120,8 @@ def yardstick(case: Case) -> Yardstick | None:
         return None
     folds, columns = prepared
     alone = _free_network(replace(case, tests=case.usable))
-    same = alone and (alone[1].inputs, alone[1].boundaries, *alone[1].steady) == (
-        columns.inputs,
-        columns.boundaries,
-        *columns.steady,
-    )
+    every = columns.inputs, columns.boundaries, *columns.steady
+    same = alone and (alone[1].inputs, alone[1].boundaries, *alone[1].steady) == every
     step = row_step(case.usable, columns)
     records = [r for fold in folds for r in fold]
     unseen = [table_record(t, columns, step) for t in case.tests if t.role == "hold-out"]
@@ -278,3 +266,28 @@ def rms(errors: Sequence[Array], steps: Sequence[float] = (1.0,)) -> float:
     seconds = [step * np.count_nonzero(~np.isnan(e)) for e, step in zip(errors, steps, strict=True)]
     squares = [step * np.nansum(e**2) for e, step in zip(errors, steps, strict=True)]
     return float(np.sqrt(np.sum(squares) / np.sum(seconds))) if np.any(seconds) else float("nan")
+
+
+@dataclass(frozen=True)
+class Persistence:
+    """What knows nothing: every sensor stays as it began, or keeps its usual distance from a boundary.
+
+    boundary : the column whose temperature the sensors follow, None where they stay;  rise (n_sensor,) K above it"""
+
+    boundary: int | None
+    rise: Array
+
+    def run(self, record: Record) -> Array:
+        """(n, n_sensor) degC"""
+        if self.boundary is None:
+            return np.broadcast_to(record.T[0], record.T.shape)
+        return record.boundary[:, [self.boundary]] + self.rise
+
+
+def usual_rise(records: Sequence[Record], boundary: int | None) -> Persistence:
+    """The model of some records."""
+    if boundary is None:
+        return Persistence(None, np.empty(0))
+    each = [np.where(r.read, r.T - r.boundary[:, [boundary]], 0.0).sum(axis=0) * r.step for r in records]
+    read = [r.read.sum(axis=0) * r.step for r in records]
+    return Persistence(boundary, np.sum(each, axis=0) / np.maximum(np.sum(read, axis=0), 1e-300))

@@ -81,10 +81,8 @@ def against_input(comparison: Comparison, channel: str, name: str, *, theme: The
 
 def parity(comparison: Comparison, *, theme: Theme = LIGHT) -> go.Figure:
     """Modelled against measured (degC), a colour per sensor; a right model lies on the line."""
-    out, thin = (
-        figure(theme, title={"text": f"{as_text(comparison.test.name)}: modelled against measured", "x": 0.02}),
-        4,
-    )
+    out = figure(theme, title={"text": f"{as_text(comparison.test.name)}: modelled against measured", "x": 0.02})
+    thin = 4
     low, high = np.inf, -np.inf
     for c in comparison.channels:
         y, model = np.asarray(c.y, float), np.asarray(comparison.model[c.name], float)

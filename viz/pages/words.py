@@ -64,10 +64,8 @@ def _agreement(comparison: Document | None) -> tuple[str, str]:
         [] if comparison is None else [c for t in comparison["tests"] for c in t["channels"] if c["verdict"] == "over"]
     )
     if comparison is None or not over:
-        return (
-            "good",
-            "The model agrees with the measurements within the uncertainty of readings, inputs, arithmetic.",
-        )
+        agrees = "The model agrees with the measurements within the uncertainty of readings, inputs, arithmetic."
+        return "good", agrees
     places = sorted({c["place"] for c in over})
     return "warn", f"The model disagrees with the measurements at {spoken(places)}."
 

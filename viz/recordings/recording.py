@@ -9,6 +9,7 @@ from __future__ import annotations
 import re
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
+from itertools import cycle
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -16,16 +17,15 @@ import numpy as np
 
 from geom.arrays import Array
 from geom.errors import InputError
-from viz.colours import BLUE, LIGHT, heat
+from viz.colours import BLUE, GREEN, LIGHT, ORANGE, PURPLE, SKY, VERMILION, heat
 from viz.data import Comparison, Curve, Sensor, short
 from viz.figures.errors import PALE, error_paths
 from viz.machine.thermocouples import LABELS
-from viz.recordings import scale
 from viz.recordings.arrangement import blueprint, eye, non_overlapping, outside_outline
 from viz.rendering import scene
 from viz.rendering.cut import QUARTER, Surface, Wedge, cut_away
 from viz.rendering.nodes import SplitMesh, on_nodes
-from viz.rendering.scale import rounded
+from viz.rendering.scale import decimals, marks, rounded
 from viz.rendering.visibility import covered, obstacle
 
 if TYPE_CHECKING:
@@ -72,9 +72,9 @@ def write_recording(
     stream.save(path, default_blueprint=blueprint(comparison, worst, surface.points, bool(history)))
     ends = rounded(*(limits or (float(fields.min()), float(fields.max()))))
     _machine(stream, surface, times, fields, revision_fields, ends)
-    scale.colour_bar(stream, *ends)
-    scale.inputs(stream, comparison, TIME)
-    scale.events(stream, comparison, TIME)
+    colour_bar(stream, *ends)
+    inputs(stream, comparison, TIME)
+    events(stream, comparison, TIME)
     _sensors(stream, comparison, times, positions, revision_residuals, surface)
     _curves(stream, comparison)
     _revisions(stream, history)
@@ -166,7 +166,7 @@ def _names(
     )
     stream.log("machine/names", labels, static=True)
     stubs = [np.stack([places[i], at[i]]) for i in visible if hidden[i]]
-    lines = rr.LineStrips3D(stubs, colors=scale.rgba(LIGHT.ink), radii=rr.Radius.ui_points(0.8))
+    lines = rr.LineStrips3D(stubs, colors=rgba(LIGHT.ink), radii=rr.Radius.ui_points(0.8))
     stream.log("machine/stubs", lines, static=True)
 
 
@@ -177,7 +177,7 @@ def _markers(
     import rerun as rr
 
     colours = [
-        scale.rgba(Sensor(channel.name, (0, 0, 0), r, c.limit_K(channel)).colour)
+        rgba(Sensor(channel.name, (0, 0, 0), r, c.limit_K(channel)).colour)
         for row in residual
         for channel, r in zip(channels, row, strict=True)
     ]
@@ -200,8 +200,8 @@ def _curves(stream: rr.RecordingStream, c: Comparison) -> None:
 
 def _series(stream: rr.RecordingStream, path: str, time: Array, curve: Curve) -> None:
     finite = np.isfinite(curve.y)
-    index = scale.time_column(TIME, np.asarray(time)[finite])
-    scale.line(stream, path, index, curve.y[finite], curve.colour, curve.name, widths=2.0)
+    index = time_column(TIME, np.asarray(time)[finite])
+    line(stream, path, index, curve.y[finite], curve.colour, curve.name, widths=2.0)
 
 
 def _revisions(stream: rr.RecordingStream, history: Sequence[Mapping[str, Any]]) -> None:
@@ -211,7 +211,7 @@ def _revisions(stream: rr.RecordingStream, history: Sequence[Mapping[str, Any]])
         path = f"error/{rr.escape_entity_path_part(name)}"
         colour, width = (BLUE, 4.0) if role == "hold-out" else (PALE, 2.0)
         index, style = rr.TimeColumn(REVISION, sequence=range(len(errors))), {"interpolation_mode": "StepAfter"}
-        scale.line(stream, path, index, np.array(errors), colour, f"{name} ({role})", widths=width, **style)
+        line(stream, path, index, np.array(errors), colour, f"{name} ({role})", widths=width, **style)
     for i, text in enumerate(["as built", *(f"{r['action']} {r.get('effect') or ''}" for r in history)]):
         if history:
             stream.set_time(REVISION, sequence=i)
@@ -226,3 +226,73 @@ A name on a line belongs to a sensor inside or behind.
 
 Timelines (chosen at the bottom left): **test_time** runs through the test; for the tab *revisions* choose **revision**.
 """
+
+
+# What explains a recording beside the machine: a colour bar with round numbers, the inputs, what happened when.
+WIDE, HIGH = 24, 256  # pixels of the bar
+COLOURS = (BLUE, VERMILION, GREEN, ORANGE, PURPLE, SKY)
+GAP = 14  # pixels from the bar to its numbers
+
+
+def colour_bar(stream: rr.RecordingStream, low: float, high: float) -> None:
+    """A picture of the scale from a rounded range (degC), its marks beside it."""
+    import rerun as rr
+
+    ramp = (np.asarray(heat()(np.linspace(1.0, 0.0, HIGH)))[:, :3] * 255).astype(np.uint8)
+    stream.log("scale/bar", rr.Image(np.repeat(ramp[:, None], WIDE, axis=1)), static=True)
+    at = marks(low, high)
+    height = [HIGH * (1 - (m - low) / (high - low)) for m in at]
+    words = [f"{m:.{decimals(low, high)}f} °C" for m in at]
+    points = rr.Points2D(
+        [[WIDE + GAP, h] for h in height],
+        labels=words,
+        show_labels=True,
+        radii=rr.Radius.ui_points(0.0),
+        colors=[31, 41, 51],
+    )
+    stream.log("scale/marks", points, static=True)
+
+
+def inputs(stream: rr.RecordingStream, comparison: Comparison, timeline: str) -> None:
+    """A curve for each input of the test, as a share of its largest value, which its name tells."""
+    import rerun as rr
+
+    test = comparison.test
+    for (name, values), colour in zip(test.inputs.items(), cycle(COLOURS), strict=False):
+        value = np.broadcast_to(np.asarray(values, float), np.shape(test.time))
+        largest = float(np.nanmax(np.abs(value), initial=0.0)) or 1.0
+        path = f"inputs/{rr.escape_entity_path_part(name)}"
+        line(stream, path, time_column(timeline, test.time), value / largest, colour, f"{name} / {largest:.4g}")
+
+
+def time_column(timeline: str, seconds: Array) -> rr.TimeColumn:
+    """The times (n,) s of a line's values."""
+    import rerun as rr
+
+    return rr.TimeColumn(timeline, duration=np.asarray(seconds, float))
+
+
+def line(
+    stream: rr.RecordingStream, path: str, index: rr.TimeColumn, y: Array, colour: str, name: str, **style: Any
+) -> None:
+    """A named line of values (n,) at the places of `index`."""
+    import rerun as rr
+
+    stream.log(path, rr.SeriesLines(colors=rgba(colour), names=name, **style), static=True)
+    stream.send_columns(path, indexes=[index], columns=rr.Scalars.columns(scalars=y))
+
+
+def rgba(colour: str) -> int:
+    """'#rrggbb' as rerun's 0xRRGGBBAA."""
+    return int(colour[1:] + "ff", 16)
+
+
+def events(stream: rr.RecordingStream, comparison: Comparison, timeline: str) -> None:
+    """When something was different: a line of text where each event begins and ends."""
+    import rerun as rr
+
+    for begin, end in comparison.events:
+        for second, word in ((begin, "begins"), (end, "ends")):
+            stream.set_time(timeline, duration=float(second))
+            stream.log("events", rr.TextLog(f"something is different: {word} ({second / 60:.0f} min)", level="WARN"))
+    stream.reset_time()

@@ -20,10 +20,40 @@ from viz.data import Comparison, late_mean, short
 from viz.rendering.flux import nodal_flux
 from viz.rendering.nodes import SplitMesh
 from viz.rendering.scale import marks, rounded
-from viz.viewer.error_map import PEAK, ErrorMap, packed_maps
 from viz.viewer.network import NetworkRun, network_document
 from viz.viewer.packing import packed_integers, packed_numbers
 from viz.viewer.part_shapes import ERROR_K, packed_fields
+
+ERROR = 0.02  # of a residual: far below what a sensor can tell
+STEP = 0.008  # of a residual, of the shapes at their largest amplitude
+SHARE = 0.02  # in which steps the explained share is kept
+PEAK = 0.99  # of the instants whose largest error the colours reach: the first seconds of a start are left out
+
+
+@dataclass(frozen=True)
+class ErrorMap:
+    """Measured minus modelled everywhere, as the page mixes it: what each sensor's residual tells at every node.
+
+    sensors : names of m channels;  gain : (n_nodes, m) K/K;  explained : (n_nodes,) share of the variance, see
+    validation.comparison.interpolation"""
+
+    sensors: tuple[str, ...]
+    gain: Array
+    explained: Array
+
+    def at(self, residual_K: Mapping[str, Array]) -> Array:
+        """(n_nodes, n) K from residuals (n,) K; what was not read tells nothing."""
+        return np.asarray(self.gain @ np.nan_to_num(np.stack([residual_K[name] for name in self.sensors])))
+
+
+def packed_maps(maps: Sequence[ErrorMap], nodes: SplitMesh) -> dict[str, Any]:
+    """gains : of every test and sensor, in the order of their names;  told : of every test, the explained share."""
+    return {
+        "gains": packed_fields(np.concatenate([m.gain.T for m in maps]), nodes, ERROR, STEP),
+        "sensors": [[short(name) for name in m.sensors] for m in maps],
+        "told": packed_fields(np.stack([m.explained for m in maps]), nodes, SHARE, SHARE),
+    }
+
 
 FRAMES = 21  # instants of a test that the range of its errors is looked up at
 UNSEEN = 0.02  # of a range of colours: what lies beyond it by less has its last colour

@@ -44,16 +44,10 @@ def _doubts(document: Mapping[str, Any]) -> list[str]:
 
 def _row(c: Mapping[str, Any]) -> list[Any]:
     e, q = c["eq8"], c["equilibrium"]
-    fit = (
-        ["-"] * 6
-        if e is None
-        else [
-            *(_with(e[key], e["ci95"][name]) for key, name in (("a_degC", "a"), ("b", "b"), ("c_1_min", "c"))),
-            e["rmse_K"],
-            e["start_degC"],
-            e["tau95_min"],
-        ]
-    )
+    fit: list[Any] = ["-"] * 6
+    if e is not None:
+        sizes = (_with(e[key], e["ci95"][name]) for key, name in (("a_degC", "a"), ("b", "b"), ("c_1_min", "c")))
+        fit = [*sizes, e["rmse_K"], e["start_degC"], e["tau95_min"]]
     return [*fit, *(["-", "-"] if q is None else [_since(q), q["drift_K_h"]])]
 
 

@@ -8,8 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from extras.bench.measuring.drift import Drift, drift
-from thermoscope import InputError
-from thermoscope import plugin as th
+from thermoscope import InputError, plugin as th
 
 
 def drift_between(case: str, test: str | None, against: str, tell: th.Progress) -> Drift:

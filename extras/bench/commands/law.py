@@ -10,8 +10,7 @@ import numpy as np
 
 from extras.bench.steady_law.law import Prediction, SteadyLaw, checks, find_law
 from extras.bench.steady_law.steady_tests import Columns, SteadyTests, read_tests
-from thermoscope import InputError
-from thermoscope import plugin as th
+from thermoscope import InputError, plugin as th
 
 MOST_INPUTS = 3  # of a law: with more, forms outnumber the tests of any bench
 Predicted = tuple[SteadyTests, Prediction]

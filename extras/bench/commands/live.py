@@ -11,8 +11,7 @@ from extras.bench.live.settings import read_bench
 from extras.bench.live.sources import source_of
 from extras.bench.live.steering import UNDECIDED, Steering
 from extras.bench.live.store import Store
-from thermoscope import InputError
-from thermoscope import plugin as th
+from thermoscope import InputError, plugin as th
 
 OPEN = (UNDECIDED, "the time is over", "the rows are at their end")
 
@@ -58,11 +57,8 @@ def live_document(
 
 def live_summary(document: Mapping[str, Any]) -> th.Summary:
     """How it ended, the odds, and what was set."""
-    odds = th.Table(
-        "Odds",
-        ["odds", "cause"],
-        [[th.percent(o["probability"]), th.value_words(o["cause"])] for o in document["odds"]],
-    )
+    causes = [[th.percent(o["probability"]), th.value_words(o["cause"])] for o in document["odds"]]
+    odds = th.Table("Odds", ["odds", "cause"], causes)
     rows = [
         [e["time_s"] / 60.0, ", ".join(f"{n} = {v:g}" for n, v in e["set_point"].items())]
         for e in document["set_points"]

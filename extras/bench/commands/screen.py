@@ -7,8 +7,7 @@ from functools import partial
 from pathlib import Path
 from typing import Any
 
-from thermoscope import InputError
-from thermoscope import plugin as th
+from thermoscope import InputError, plugin as th
 
 DESIGNS = ("full", "half", "gap", "morris", "sobol")
 TRAJECTORIES, SAMPLES = 20, 256  # 160 runs, 2304 runs of some milliseconds
@@ -58,11 +57,8 @@ def screening_summary(document: Mapping[str, Any]) -> th.Summary:
         for g in tables
         if g.rows
     )
-    return th.Summary(
-        f"{document['machine']}, {document['design']}: what moves most. {leading}.",
-        tables,
-        "--out DIR for plots; --json FILE",
-    )
+    sentence = f"{document['machine']}, {document['design']}: what moves most. {leading}."
+    return th.Summary(sentence, tables, "--out DIR for plots; --json FILE")
 
 
 def _effects(name: str, effects: Mapping[str, Any]) -> th.Table:

@@ -16,8 +16,7 @@ from typing import Any
 
 import numpy as np
 
-from thermoscope import InputError
-from thermoscope import plugin as th
+from thermoscope import InputError, plugin as th
 
 
 @dataclass(frozen=True)

@@ -11,8 +11,7 @@ import numpy as np
 from extras.bench.factors.factorial import Design, Effects, Factor, effects
 from extras.bench.factors.sensitivity import Response, Varied
 from extras.bench.reduction.pm_network import PmSettings, Rows, pm_network, table_of
-from thermoscope import Record, simulate
-from thermoscope import plugin as th
+from thermoscope import Record, plugin as th, simulate
 
 AMBIENT = 20.0  # degC
 TABLE_I = (

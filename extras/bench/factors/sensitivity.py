@@ -13,8 +13,7 @@ from typing import Any
 
 import numpy as np
 
-from thermoscope import InputError
-from thermoscope import plugin as th
+from thermoscope import InputError, plugin as th
 
 Response = Callable[[Mapping[str, float]], float]
 

@@ -10,8 +10,7 @@ import numpy as np
 
 from extras.bench.heat_run.limits import GRADIENT_K_H
 from extras.bench.measuring.warming import equilibrium, fit_eq8, spaced_window
-from thermoscope import InputError
-from thermoscope import plugin as th
+from thermoscope import InputError, plugin as th
 
 DUTIES = tuple(f"S{n}" for n in range(1, 11))
 CYCLIC, BY_LOAD = ("S3", "S4", "S5", "S6", "S7", "S8"), ("S9", "S10")

@@ -19,8 +19,7 @@ from extras.bench.heat_run.rises import (
     superposed_rise,
 )
 from extras.bench.measuring.protocol import Step, checked_steps
-from thermoscope import InputError
-from thermoscope import plugin as th
+from thermoscope import InputError, plugin as th
 
 BY_DUTY = "constant load"  # the step of the procedure that a duty judges in its own way
 

@@ -17,8 +17,7 @@ from extras.bench.heat_run.limits import CLASSES, STANDARDS, Rating
 from extras.bench.heat_run.rises import K_OF, network_way, winding_of
 from extras.bench.measuring.protocol import Cold, Hot, Record
 from extras.bench.measuring.record_file import Pairs, record_in, timed_pairs
-from thermoscope import InputError
-from thermoscope import plugin as th
+from thermoscope import InputError, plugin as th
 
 FILE, SUFFIX = "heat-run.toml", ".toml"  # of a case
 NAMES = ("tested", "witnessed", "approved")

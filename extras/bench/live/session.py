@@ -15,8 +15,7 @@ from extras.bench.live.settings import Bench
 from extras.bench.live.sources import Parser, Source
 from extras.bench.live.steering import Steering, Thought
 from extras.bench.live.store import BenchError
-from thermoscope import InputError
-from thermoscope import plugin as th
+from thermoscope import InputError, plugin as th
 
 WAKE_S = 0.2  # between two looks at a thought that goes on and at what a person typed
 Tell = Callable[[str], None]

@@ -7,8 +7,7 @@ from dataclasses import dataclass
 from itertools import product
 from pathlib import Path
 
-from thermoscope import InputError, Network
-from thermoscope import plugin as th
+from thermoscope import InputError, Network, plugin as th
 
 FILE = "bench.toml"
 OVER = 0.05  # of its largest level, by which a meter may read more before it counts as crossed

@@ -20,8 +20,7 @@ from typing import IO, Any
 from urllib.parse import urlsplit
 
 from extras.bench.live.store import BenchError, Row
-from thermoscope import InputError
-from thermoscope import plugin as th
+from thermoscope import InputError, plugin as th
 
 POLL_S = 0.2  # between two looks at a file that grows
 BYTES = 2**20  # of a line: more is no row

@@ -183,7 +183,7 @@ class Steering:
             return Thought(time, assessment, stop=stop, left_min=0.0)
         waits = not self.obeyed and time - self.since < self.bench.deaf_s
         running = waits or time < self.due
-        if running and self._stays_below(assessment):
+        if running and (self.now == self.bench.safe or is_allowed(assessment, self.bench, self.now)):
             return Thought(time, assessment, left_min=self._left(assessment, None))
         if self.promise and assessment.gain_over(self.promise[1]) < CREDIT * self.promise[2]:
             self.broken[self.promise[0]] = self.broken.get(self.promise[0], 0) + 1
@@ -211,11 +211,9 @@ class Steering:
 
     def _of_what_shows(self, assessment: Assessment, p: float) -> float:
         """That nothing is missing among all that a set point may still show: the rest keeps the odds it came with."""
-        odds, elapsed, rest = (
-            dict(assessment.odds),
-            (self.time - self.begin) / MINUTE,
-            unresolved(assessment, self.bench),
-        )
+        odds = dict(assessment.odds)
+        elapsed = (self.time - self.begin) / MINUTE
+        rest = unresolved(assessment, self.bench)
         if elapsed < SOONEST_MIN or p < SURE * (1.0 - sum(odds.get(r.lead, 0.0) for r in rest)):
             return p
         if elapsed > AGAIN * self.searched_min:  # it costs as much as ten looks, and changes as slowly as the parts
@@ -223,10 +221,6 @@ class Steering:
             self.hidden = undetectable(assessment, self.bench, self.now, rest, left)
             self.searched_min = elapsed
         return p / (1.0 - sum(odds.get(n, 0.0) for n in self.hidden))
-
-    def _stays_below(self, assessment: Assessment) -> bool:
-        """Does what runs stay below every limit until the next look?"""
-        return self.now == self.bench.safe or is_allowed(assessment, self.bench, self.now)
 
     def _left(self, assessment: Assessment, rate: float | None) -> float:
         """Minutes to the answer, as far as information per minute goes on; to the end of the run at most."""

@@ -11,8 +11,7 @@ from io import TextIOWrapper
 from pathlib import Path
 from typing import Any
 
-from thermoscope import InputError
-from thermoscope import plugin as th
+from thermoscope import InputError, plugin as th
 
 Row = dict[str, float]
 

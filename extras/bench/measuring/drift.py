@@ -16,8 +16,7 @@ import numpy as np
 
 from extras.bench.measuring.curves import ALIKE, LATE, constant
 from extras.bench.measuring.repeats import LEVEL
-from thermoscope import InputError
-from thermoscope import plugin as th
+from thermoscope import InputError, plugin as th
 
 Verdict = Literal["changed", "equal", "cannot tell"]
 WIDE = 0.05  # of a rise or a time constant: surer than that, nine in ten changes of a tenth are seen
@@ -229,10 +228,8 @@ def _sensor(sensor: th.Channel, time: th.Array, columns: th.Array) -> Sensor | N
     X = np.column_stack([shape, -scale * heat_gain[1] - air_gain[1], warm - heat[1], np.ones_like(t)])
     offset = np.sqrt(2.0) * sensor.sigma_K  # of the difference of two readings
     changes, covariance, noise_K = _fitted(t, after - rise[1], X, offset)
-    end, first = (
-        float(np.mean(rise[1, t >= LATE * t[-1]])),
-        t[np.argmax(shape >= TIME_CONSTANT_SHARE * shape[-1])] / 60.0,
-    )
+    end = float(np.mean(rise[1, t >= LATE * t[-1]]))
+    first = t[np.argmax(shape >= TIME_CONSTANT_SHARE * shape[-1])] / 60.0
     gain = offset / max(abs(end), sensor.sigma_K)
     sd = np.sqrt(np.diag(covariance)[:2] + np.array([gain**2, 0.0]))
     free = t.size - X.shape[1]

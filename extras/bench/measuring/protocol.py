@@ -12,8 +12,7 @@ from typing import Any, Literal
 import numpy as np
 
 from extras.bench.measuring.warming import equilibrium, spaced_window
-from thermoscope import InputError
-from thermoscope import plugin as th
+from thermoscope import InputError, plugin as th
 
 State = Literal["done", "to do", "refused", "doubtful"]
 ROOM_K = 1.0  # the machine counts as cold within this of the room
@@ -216,10 +215,8 @@ def _hot_ohm(record: Record) -> tuple[State, str]:
     if outcome[0] == "refused":
         return outcome
     if len(times) < 4 or times[-1] < SPAN_S * 0.8 or max(np.diff(times)) > INTERVAL_S:
-        return (
-            "doubtful",
-            f"{len(times)} readings to {times[-1]:g} s; every 15 s for 5 min let the fits judge themselves",
-        )
+        words = f"{len(times)} readings to {times[-1]:g} s; every 15 s for 5 min let the fits judge themselves"
+        return "doubtful", words
     return "done", f"first after {times[0]:g} s, {len(times)} readings to {times[-1]:g} s"
 
 

@@ -8,8 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from thermoscope import InputError
-from thermoscope import plugin as th
+from thermoscope import InputError, plugin as th
 
 LEVEL = 0.05  # significance: how often equal runs are said to differ
 

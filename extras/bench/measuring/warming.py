@@ -11,8 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from thermoscope import InputError
-from thermoscope import plugin as th
+from thermoscope import InputError, plugin as th
 
 START_K = 2.0  # a fitted start further off the measured one than this is worth a warning
 

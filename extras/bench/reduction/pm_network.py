@@ -12,8 +12,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
-from thermoscope import Network, read_network
-from thermoscope import plugin as th
+from thermoscope import Network, plugin as th, read_network
 
 Rows = Mapping[str, th.PartRow]
 K_AIR = 0.028  # W/m/K, air near 50 degC

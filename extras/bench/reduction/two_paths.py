@@ -13,8 +13,7 @@ from typing import Any
 
 import numpy as np
 
-from thermoscope import InputError, Network, Steady, ThermoscopeError, steady
-from thermoscope import plugin as th
+from thermoscope import InputError, Network, Steady, ThermoscopeError, plugin as th, steady
 
 
 @dataclass(frozen=True)

@@ -9,8 +9,7 @@ from pathlib import Path
 
 import numpy as np
 
-from thermoscope import InputError
-from thermoscope import plugin as th
+from thermoscope import InputError, plugin as th
 
 FLUIDS: dict[str, Callable[[float], th.Fluid]] = {"oil": th.oil, "water": th.water}
 FLOW_UNITS = {"l/min": th.L_MIN, "l/s": 60.0 * th.L_MIN, "m3/h": 1.0 / 3600.0, "m3/s": 1.0}

@@ -7,8 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from extras.export.compilers import compiler, here
-from thermoscope import InputError, MissingDependency, ThermoscopeError
-from thermoscope import plugin as th
+from thermoscope import InputError, MissingDependency, ThermoscopeError, plugin as th
 
 if TYPE_CHECKING:
     from extras.export.model import Model

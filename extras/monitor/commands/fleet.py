@@ -13,8 +13,7 @@ import numpy as np
 from extras.monitor.fleet import Population, population
 from extras.monitor.fleet.population import DIFFERS
 from extras.monitor.rows.fleet import STEP_S, Reader, histories, recordings
-from thermoscope import InputError
-from thermoscope import plugin as th
+from thermoscope import InputError, plugin as th
 
 WIDE = 50.0  # spread (%) of a parameter beyond which motors of one type seldom are; films and joints drift by a third
 FAR, LEAST_K = 3.0, 0.3  # times the usual error, and what that is at least: below it only noise is left
@@ -104,11 +103,8 @@ def unequal_words(document: Mapping[str, Any]) -> str:
     other = [u["unit"] for u in document["units"] if u["rmse_K"] > FAR * max(usual, LEAST_K)]
     wide = [p for p in document["parameters"] if p["differs"] and p["spread_percent"] > WIDE]
     why = [f"{th.value_words(p['name'])} differs by {p['spread_percent']:.0f} %" for p in wide[:2]]
-    why += (
-        [f"the model leaves more than {FAR:g} times as much of {', '.join(other[:3])} as of the usual one"]
-        if other
-        else []
-    )
+    if other:
+        why.append(f"the model leaves more than {FAR:g} times as much of {', '.join(other[:3])} as of the usual one")
     return f"Are these equal motors? {'; '.join(why)}. Give each type a folder of its own." if why else ""
 
 

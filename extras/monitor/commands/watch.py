@@ -14,8 +14,7 @@ from extras.monitor.observer.learning import Design
 from extras.monitor.observer.process import Process
 from extras.monitor.rows.live_rows import PIPE, Rows
 from extras.monitor.rows.observing import joined, record_of
-from thermoscope import Record
-from thermoscope import plugin as th
+from thermoscope import Record, plugin as th
 
 MINUTE = 60.0
 

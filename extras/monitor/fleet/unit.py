@@ -14,8 +14,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from thermoscope import Network, Parameter
-from thermoscope import plugin as th
+from thermoscope import Network, Parameter, plugin as th
 
 CAPACITY_YEAR, LOSS_YEAR = 0.005, 0.03  # masses stay, magnets and sheets age by per cents (of the logarithm)
 PATH_YEAR = 0.3  # a film or joint that loses a quarter in a year is fouling or loosening badly

@@ -13,8 +13,7 @@ from functools import cached_property
 
 import numpy as np
 
-from thermoscope import Network, Parameter
-from thermoscope import plugin as th
+from thermoscope import Network, Parameter, plugin as th
 
 MOVING = ("speed", *th.FLOWS)
 FARTHEST = 1.5  # of a logarithm: beyond, a tangent says nothing

@@ -15,8 +15,7 @@ import numpy as np
 from extras.monitor.observer.constants import Constants
 from extras.monitor.observer.process import Process
 from extras.monitor.observer.process_noise import ProcessNoise, thinned
-from thermoscope import Record
-from thermoscope import plugin as th
+from thermoscope import Record, plugin as th
 
 LASTS_S = 600.0  # an error of a whole recording is that of a place or of its rig: it lasts as long as the heat does
 CLOSE = 1e-3  # deviations of a constant that change no heat worth the work

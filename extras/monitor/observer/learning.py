@@ -9,11 +9,10 @@ import numpy as np
 
 from extras.monitor.observer.constants import Constants, Sensor, with_motion
 from extras.monitor.observer.joint_filter import JointFilter
-from extras.monitor.observer.observer import Observer, Sample, observer
+from extras.monitor.observer.observer import Observer, observer
 from extras.monitor.observer.process import Process
-from extras.monitor.observer.process_noise import ProcessNoise, thinned
-from thermoscope import Network, Parameter
-from thermoscope import plugin as th
+from extras.monitor.observer.process_noise import ProcessNoise
+from thermoscope import Network, Parameter, plugin as th
 
 Progress = Callable[[str], None]
 HALF = 0.5  # of an effect: correlations that an effect follows are known within a factor
@@ -104,16 +103,6 @@ def constants_of(network: Network, values: Mapping[str, float], tests: Sequence[
     bare, start = th.heat_model(network, values)
     channels = {c.name: c for t in tests for c in t.channels}
     return Constants(with_motion(bare, tests), start, tuple(channels.values()), doubt)
-
-
-def over(design: Design, test: th.Test, measured: Sequence[str]) -> tuple[Observer, list[Sample]]:
-    """An observer after a test, and its samples."""
-    test = thinned(test)
-    course, sensors = th.record(test, {}), [c for c in test.channels if c.name in measured]
-    y = np.column_stack([c.y for c in sensors]) if sensors else np.empty((test.time.size, 0))
-    around = {b: float(np.asarray(u, float).flat[0]) for b, u in course.boundaries.items()}
-    one = design.started(sensors, y[0], around)
-    return one, list(one.follow(course, y))
 
 
 def usual_rise(tests: Sequence[th.Test]) -> float:

@@ -13,8 +13,7 @@ from extras.monitor.observer.kalman import Filter, begun
 from extras.monitor.observer.process import Driven, Process
 from extras.monitor.observer.process_noise import ProcessNoise
 from extras.monitor.observer.sensor_faults import SensorState
-from thermoscope import Record
-from thermoscope import plugin as th
+from thermoscope import Record, plugin as th
 
 CORRELATION_S = 60.0  # a reading's error lasts about a minute: more readings within it are no more evidence
 

@@ -17,8 +17,7 @@ from math import ceil, sqrt
 import numpy as np
 from scipy.linalg import get_lapack_funcs
 
-from thermoscope import Network, Record
-from thermoscope import plugin as th
+from thermoscope import Network, Record, plugin as th
 
 GAMMA = 1.0 - sqrt(0.5)  # L-stable
 LONGEST_S = 20.0  # of an inner step: a fraction of the time constants that windings have

@@ -11,8 +11,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from thermoscope import Network, Parameter, simulate
-from thermoscope import plugin as th
+from thermoscope import Network, Parameter, plugin as th, simulate
 
 INSTANTS = 100  # of a test: heat turns slowly
 MOST_BODIES = 10  # heat in small parts shows in their neighbours

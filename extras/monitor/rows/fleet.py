@@ -13,8 +13,7 @@ import numpy as np
 
 from extras.monitor.fleet import Statistics, UnitHistory, statistics
 from extras.monitor.rows.live_rows import Rows, table_of
-from thermoscope import InputError
-from thermoscope import plugin as th
+from thermoscope import InputError, plugin as th
 
 PIECE = 20_000  # rows that are in memory at once: five hours at 1 Hz
 LEAST = 60  # rows worth a fit

@@ -11,8 +11,7 @@ from pathlib import Path
 
 import numpy as np
 
-from thermoscope import InputError, Network
-from thermoscope import plugin as th
+from thermoscope import InputError, Network, plugin as th
 
 TOGETHER = 500  # rows of a file that are read at once
 PIPE = "-"

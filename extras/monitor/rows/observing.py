@@ -13,8 +13,7 @@ from extras.monitor.observer.learning import Design, Lesson, design_of, narrowed
 from extras.monitor.observer.process import bodies_of
 from extras.monitor.observer.process_noise import most_doubtful, of_doubt
 from extras.monitor.rows.live_rows import Rows
-from thermoscope import InputError, Network, Record, simulate
-from thermoscope import plugin as th
+from thermoscope import InputError, Network, Record, plugin as th, simulate
 
 LAYOUT = 3  # of a kept file: a change here makes old ones be left alone
 Model = tuple[Network, Mapping[str, float]]  # and the values of its parameters

@@ -16,8 +16,7 @@ from extras.rating.operation import coolant_boundaries
 from extras.rating.optimisation.auxiliaries import auxiliary_power
 from extras.rating.request import Rated, RatingRequest, rated_model
 from extras.rating.rows import row
-from thermoscope import InputError, ThermoscopeError, steady
-from thermoscope import plugin as th
+from thermoscope import InputError, ThermoscopeError, plugin as th, steady
 
 MOST = 6  # designs side by side: more do not fit on a screen
 RUNAWAY_C = 1e3  # no part of a motor gets as hot: it does not settle

@@ -17,8 +17,7 @@ from extras.rating.design.machine_keys import MachineFile, machine_file_text, sh
 from extras.rating.designs import WORDS, column, page
 from extras.rating.optimisation.problem import COPPER, SETTLING, Problem
 from extras.rating.optimisation.search import METHODS, Design, Effort, StoppedSearchError, pareto_set
-from thermoscope import InputError
-from thermoscope import plugin as th
+from thermoscope import InputError, plugin as th
 
 
 def optimised(

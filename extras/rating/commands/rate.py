@@ -18,8 +18,7 @@ from extras.rating.points import Model
 from extras.rating.repeated_cycle import Lap, share_for_ever, time_to_limit
 from extras.rating.request import Rated, RatingRequest, rated_model
 from extras.rating.rows import derated, load_of, point, row
-from thermoscope import InputError
-from thermoscope import plugin as th
+from thermoscope import InputError, plugin as th
 
 POINTS = 6  # speeds of the envelope
 LOADS = 8  # loads of the map

@@ -17,8 +17,7 @@ from extras.rating.optimisation.corrections import Corrections, errors, learned
 from extras.rating.optimisation.problem import COPPER, SETTLING, Problem
 from extras.rating.optimisation.scaling import Scaling, design_parameters
 from extras.rating.optimisation.space import Variable
-from thermoscope import InputError, Network
-from thermoscope import plugin as th
+from thermoscope import InputError, Network, plugin as th
 
 Progress = Callable[[str], None]
 HALVINGS = 6  # of the way to a bound; nearer, a variable says nothing

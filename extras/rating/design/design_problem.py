@@ -18,8 +18,7 @@ from extras.rating.optimisation.problem import COPPER, OBJECTIVES, PEAK, SETTLIN
 from extras.rating.optimisation.scaling import Scaling, design_parameters
 from extras.rating.optimisation.space import Space, Variable
 from extras.rating.request import places, usual_point
-from thermoscope import InputError, Network
-from thermoscope import plugin as th
+from thermoscope import InputError, Network, plugin as th
 
 GAIN_RANGE = (0.25, 4.0)  # of a controller's gain
 INPUT_RANGE = (0.5, 2.0)  # of an input's value at the operating point, where nothing else is said

@@ -11,8 +11,7 @@ from typing import Any
 
 from extras.rating.optimisation.auxiliaries import FAN
 from extras.rating.optimisation.space import Variable
-from thermoscope import InputError
-from thermoscope import plugin as th
+from thermoscope import InputError, plugin as th
 
 GEOMETRY = "geometry"
 FLOWS = {"cooling.flow_L_per_min": th.FLOW, "fans.flow_m3_h": FAN}  # key -> the input of the network that it rates

@@ -17,8 +17,7 @@ from extras.rating.optimisation.electrics import Electrics
 from extras.rating.optimisation.rest import Rest, losses, rest, without_feedback
 from extras.rating.optimisation.scaling import Scaling
 from extras.rating.optimisation.space import Space
-from thermoscope import InputError, Network
-from thermoscope import plugin as th
+from thermoscope import InputError, Network, plugin as th
 
 PEAK, SETTLING, COPPER, AUXILIARY = OBJECTIVES = ("peak_degC", "settling_s", "copper_W", "auxiliary_W")
 IMPOSSIBLE = 1e9  # what a design costs that no file can describe

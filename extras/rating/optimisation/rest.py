@@ -14,8 +14,7 @@ from functools import cached_property
 
 import numpy as np
 
-from thermoscope import Network, Record
-from thermoscope import plugin as th
+from thermoscope import Network, Record, plugin as th
 
 ABOVE_K = 30.0  # of the first guess: still air takes nothing without a difference
 SMALLEST = 1e-6  # of the largest heat capacity: what stands for none

@@ -9,8 +9,7 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from thermoscope import Network, Parameter
-from thermoscope import plugin as th
+from thermoscope import Network, Parameter, plugin as th
 
 DIFFERENCE_K = 30.0  # at which still films of two sizes are compared: both go with the difference to the same power
 

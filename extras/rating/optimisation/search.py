@@ -14,8 +14,7 @@ from typing import Any
 import numpy as np
 
 from extras.rating.optimisation.problem import Performance, Problem
-from thermoscope import InputError, MissingDependency
-from thermoscope import plugin as th
+from thermoscope import InputError, MissingDependency, plugin as th
 
 Progress = Callable[[str], None]
 Method = Callable[[int, int, int], Any]

@@ -3,12 +3,11 @@
 import numpy as np
 import pytest
 
-from extras.bench.measuring.assemblies import assemblies, assembly, worst
+from extras.bench.measuring.curves import assemblies, assembly, worst
 from extras.bench.measuring.repeats import normalised_error, pooled_curves, repeats
 from extras.bench.measuring.warming import eq8, equilibrium, fit_eq8
 from geom.errors import InputError
-from measured.case import Channel
-from measured.case import Test as CaseTest
+from measured.case import Channel, Test as CaseTest
 
 MINUTES = np.arange(0.0, 60.1, 1.0)
 PUBLISHED = (85.0, -0.652, -0.08)

@@ -11,9 +11,8 @@ from numpy.testing import assert_allclose
 
 import lumped
 from extras.export.document import factor
-from extras.export.expansion import expanded
 from extras.export.runtime.reference_solver import function
-from extras.export.tables import factors
+from extras.export.tables import expanded, factors
 from geom.errors import InputError
 from lumped.correlations.ducts import duct_film
 from lumped.correlations.streams import streamed

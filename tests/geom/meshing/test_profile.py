@@ -3,8 +3,7 @@
 import math
 
 import pytest
-from hypothesis import given
-from hypothesis import strategies as st
+from hypothesis import given, strategies as st
 
 from geom.description import shapes
 from geom.description.profile import ArcGrid, Profile, loop_length

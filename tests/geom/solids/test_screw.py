@@ -9,7 +9,7 @@ from scipy.integrate import quad
 
 from geom.description import shapes
 from geom.description.part import CadShape, Helix, Rod
-from geom.solids.carved import carved
+from geom.solids.cad import carved
 from geom.solids.screw import channel
 from geom.solids.surfaces import surface
 

@@ -6,8 +6,7 @@ The cases are the registries of the readers: what is added there without keys he
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose, assert_array_equal
-from test_circuit import circuit, closed
-from test_circuit import network as circuit_network
+from test_circuit import circuit, closed, network as circuit_network
 from test_declared_films import MOVING, STILL
 
 from lumped.correlations.contacts import GAPS, PRESSED
@@ -19,8 +18,7 @@ from lumped.declarations.parameters import MAPPINGS
 from lumped.integration.balance import balance
 from lumped.integration.simulate import Record, simulate
 from lumped.model.network import Parameter
-from lumped.transfer.coolant import MIXED
-from lumped.transfer.coolant import PLAIN as PURE
+from lumped.transfer.coolant import MIXED, PLAIN as PURE
 from lumped.transfer.exchanger import ARRANGEMENTS
 
 pytestmark = pytest.mark.filterwarnings("ignore::lumped.correlations.RangeWarning")

@@ -17,8 +17,7 @@ from measured.importing.case_files import read_runs
 from measured.importing.clock import clock_of
 from measured.importing.guess import AS_FLOW, AS_ROOM, ON_OFF, guesses, in_memory
 from measured.importing.source import read_source
-from thermoscope.commands.test.new import Wishes, first_model
-from thermoscope.commands.test.new import new_case as new
+from thermoscope.commands.test.new import Wishes, first_model, new_case as new
 
 N = 240
 T = 5 * np.arange(N)

@@ -21,8 +21,7 @@ from measured.importing.source import read_source
 from measured.importing.target import target_of
 from measured.recordings.alignment import column_onset
 from thermoscope.case_folder.folder import load_case
-from thermoscope.commands.test.new import Wishes
-from thermoscope.commands.test.new import new_case as new
+from thermoscope.commands.test.new import Wishes, new_case as new
 from validation.comparison.compare import compare
 
 FIRST_S = 60.0  # of machine time up to the first comparison

@@ -24,8 +24,7 @@ from measured.importing.target import Target
 from measured.recordings.formats import read_recording
 from thermoscope.case_folder.folder import load_case
 from thermoscope.commands.test.compare import compare as compare_command
-from thermoscope.commands.test.new import Wishes, first_model, places
-from thermoscope.commands.test.new import new_case as new
+from thermoscope.commands.test.new import Wishes, first_model, new_case as new, places
 from thermoscope.console.summary import limited_lines
 from validation.comparison.compare import compare
 

@@ -13,8 +13,7 @@ from thermoscope.case_folder.runs import before_last, comparison_of, readings
 from thermoscope.commands.model.calibrate import calibrate
 from thermoscope.commands.show.pages import report
 from thermoscope.commands.test.compare import compare
-from validation.comparison import compare as comparison
-from validation.comparison import predict
+from validation.comparison import compare as comparison, predict
 
 
 @pytest.fixture

@@ -66,6 +66,10 @@ def test_whatever_decides_a_comparison_changes_its_key(folder, monkeypatch):
     assert len(set(keys)) == len(keys) == 8
 
 
+def test_the_table_of_doubt_counts_as_code():
+    assert "doubt.csv" in {file.name for file in content._modules(("measured",))}
+
+
 def test_a_network_declared_by_hand_is_quick_and_not_kept(tmp_path, monkeypatch):
     monkeypatch.setenv("THERMOSCOPE_CACHE", str(tmp_path / "cache"))
     folder = load_case(small_case(tmp_path))

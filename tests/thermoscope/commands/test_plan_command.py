@@ -12,8 +12,7 @@ from thermoscope.case_folder.folder import load_case
 from thermoscope.commands.show.plan import plan
 from validation.planning.candidate_tests import Experiment
 from validation.revision.predicted_curves import UNCHANGED, PredictedCurves, predicted_curves, schedule
-from viz.figures.experiment import predicted
-from viz.pages.bench_page import BenchPage, render
+from viz.pages.bench_page import BenchPage, predicted, render
 
 RIVALS = ("convection@flange", "radiation@flange")
 

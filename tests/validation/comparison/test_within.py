@@ -11,8 +11,7 @@ from extras.workbench import tables
 from extras.workbench.appearance import Appearance
 from measured.case import Case, Model
 from measured.doubt import USUAL, widened
-from validation.comparison.compare import Comparison as Errors
-from validation.comparison.compare import channel_error, compare, errors
+from validation.comparison.compare import Comparison as Errors, channel_error, compare, errors
 from validation.comparison.uncertainty import COVERAGE, RULE
 from viz.colours import VERDICT
 from viz.data import Comparison, sensors

@@ -14,9 +14,7 @@ from extras.bench import figure as screening
 from geom.errors import InputError
 from viz.colours import BLUE, VERDICT
 from viz.data import Comparison
-from viz.figures import bands as uncertain
-from viz.figures import candidates as scores
-from viz.figures import curves, errors, paper
+from viz.figures import bands as uncertain, candidates as scores, curves, errors, paper
 from viz.figures.intervals import intervals
 from viz.labels import minus, signed, spread_labels
 from viz.live import sensor as live_sensor

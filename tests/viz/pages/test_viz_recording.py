@@ -16,8 +16,7 @@ from small_motor import motor
 from geom.errors import InputError
 from thermoscope.check import findings
 from viz.recordings.arrangement import blueprint, in_view, non_overlapping, outside_outline
-from viz.recordings.recording import TIME as TIME_LINE
-from viz.recordings.recording import write_recording
+from viz.recordings.recording import TIME as TIME_LINE, write_recording
 from viz.rendering.nodes import split
 from viz.rendering.scene import View
 

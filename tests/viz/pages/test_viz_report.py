@@ -7,8 +7,7 @@ from html.parser import HTMLParser
 import pytest
 from fictional import HISTORY, comparison, documents
 from PIL import Image
-from viewer_pages import NODES, PLACE, recorded
-from viewer_pages import document as viewer_document
+from viewer_pages import NODES, PLACE, document as viewer_document, recorded
 
 from extras.workbench.tabs import report_policy
 from viz.pages.report import Report, render, write_report

@@ -15,8 +15,7 @@ from extras.portraits.looks import packed_looks
 from geom import build_mesh, load_machine
 from viz import split
 from viz.rendering.flux import nodal_flux
-from viz.viewer.error_map import ERROR
-from viz.viewer.page import Earlier, machine_document, render, temperature_document
+from viz.viewer.page import ERROR, Earlier, machine_document, render, temperature_document
 from viz.viewer.part_shapes import ERROR_K
 
 pytestmark = pytest.mark.nightly

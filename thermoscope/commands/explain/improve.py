@@ -40,8 +40,7 @@ def improve(
     target: Json = None,
 ) -> int:
     """Diagnose, ask, add, again, until the model is adequate. Exit code 1 if it stops before."""
-    from validation.revision.improvement import Supervisor, singletons
-    from validation.revision.improvement import improve as climb
+    from validation.revision.improvement import Supervisor, improve as climb, singletons
 
     with progress() as tell:
         folder = open_case_for_writing(case, tell)

@@ -75,8 +75,5 @@ def machines_summary(entries: Sequence[Entry], page: Path | None) -> Summary:
         envelope=lambda e: " x ".join(f"{1e3 * size:.0f}" for size in e.envelope),
     )
     where = f"thumbnails: {page}" if page is not None else "--out DIR for thumbnails"
-    return Summary(
-        f"{len(table.rows)} machines come along.",
-        [table],
-        f"{where}; --copy NAME for the file of one; thermoscope model build MACHINE",
-    )
+    next_step = f"{where}; --copy NAME for the file of one; thermoscope model build MACHINE"
+    return Summary(f"{len(table.rows)} machines come along.", [table], next_step)

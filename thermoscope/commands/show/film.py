@@ -12,20 +12,10 @@ import typer
 from geom.arrays import Array
 from geom.description.names import file_stem
 from geom.errors import InputError
+from thermoscope.case_folder import runs
 from thermoscope.case_folder.folder import Folder
-from thermoscope.case_folder.runs import (
-    before_last,
-    by_interest,
-    fields,
-    instant_words,
-    nodes_of,
-    readings,
-    step_words,
-    temperature_range,
-)
 from thermoscope.commands.open_case import needs_geometry, open_case
-from thermoscope.console.options import Case as CaseName
-from thermoscope.console.options import Json
+from thermoscope.console.options import Case as CaseName, Json
 from thermoscope.console.summary import Summary
 from thermoscope.console.terminal import give, progress
 from thermoscope.parts import required
@@ -53,13 +43,13 @@ def film(
 
         require_gl()  # before anything is run
         folder = open_case(case, tell)
-        test, earlier = by_interest(folder)[0], before_last(folder)
-        nodes = nodes_of(folder, test)
+        test, earlier = runs.by_interest(folder)[0], runs.before_last(folder)
+        nodes = runs.nodes_of(folder, test)
         file = out or Path("out") / f"{file_stem(folder.case.name)}.gif"
         before, now = model_words(folder)
         models = {now: folder.case} if earlier is None else {before: earlier, now: folder.case}
         tell(f"running {test.name}")
-        played = {words: fields(model, test, nodes, FRAMES) for words, model in models.items()}
+        played = {words: runs.fields(model, test, nodes, FRAMES) for words, model in models.items()}
         limit_K = folder.limits(test)
         sensors = [row for w, model in models.items() for row in misses(folder, model, test, played[w][0], limit_K)]
         when = [(t, w) for w, (times, _) in played.items() for t in times]
@@ -72,7 +62,7 @@ def film(
             file,
             titles=titles,
             sensors=sensors,
-            limits=temperature_range(folder, nodes),
+            limits=runs.temperature_range(folder, nodes),
             tell=lambda k: tell(f"drawing picture {k}/{len(T)}"),
         )
     give({"case": folder.case.name, "film": str(file)}, target, lambda: Summary(f"{file}"))
@@ -84,13 +74,13 @@ def model_words(folder: Folder) -> tuple[str, str]:
     last = folder.history.last
     if last.action != "add":
         return "the model before its last step", "the model now"
-    added = step_words(folder.case, last)
+    added = runs.step_words(folder.case, last)
     return f"without {added}", f"with {added}"
 
 
 def title(test: Test, time: float, words: str, sensors: Sequence[Sensor]) -> str:
     """Which test, which instant (s), which model, and what that misses most."""
-    return f"{instant_words(test, time)}, {words}{largest(sensors)}"
+    return f"{runs.instant_words(test, time)}, {words}{largest(sensors)}"
 
 
 def largest(sensors: Sequence[Sensor]) -> str:
@@ -111,7 +101,7 @@ def misses(
     """At each of the times (s): the sensors with a place, and what is missed there of those over in the whole test."""
     from viz.data import Sensor
 
-    read, at = readings(model, test), np.searchsorted(test.time, times).clip(0, len(test.time) - 1)
+    read, at = runs.readings(model, test), np.searchsorted(test.time, times).clip(0, len(test.time) - 1)
     left = {c.name: c.y - read[c.name] for c in test.channels if c.name in folder.positions}
     rms = {name: float(np.sqrt(np.nanmean(r**2))) for name, r in left.items()}
     within = {name: error for name, error in rms.items() if error <= limit_K[name]}

@@ -24,8 +24,7 @@ from thermoscope.commands.open_case import open_case_for_writing
 from thermoscope.commands.show.picture import Subject, draw_field
 from thermoscope.commands.show.viewer import viewer_page
 from thermoscope.commands.stored_diagnosis import current_diagnosis, last_diagnosis
-from thermoscope.console.options import Case as CaseName
-from thermoscope.console.options import Json, Out
+from thermoscope.console.options import Case as CaseName, Json, Out
 from thermoscope.console.summary import Summary
 from thermoscope.console.terminal import Progress, give, notes, progress, versions
 from viz.figures import paper

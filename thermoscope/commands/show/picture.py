@@ -26,8 +26,7 @@ from thermoscope.case_folder.folder import Folder, Progress
 from thermoscope.case_folder.runs import readings
 from thermoscope.commands.open_case import open_case
 from thermoscope.commands.stored_diagnosis import last_diagnosis
-from thermoscope.console.options import Case as CaseName
-from thermoscope.console.options import Json
+from thermoscope.console.options import Case as CaseName, Json
 from thermoscope.console.summary import Summary
 from thermoscope.console.terminal import give, progress
 from validation.comparison.interpolation import Interpolated

@@ -101,8 +101,7 @@ def _file(folder: Folder) -> Path:
 
 def _documents(folder: Folder, tell: Progress) -> Iterator[dict[str, Any]]:
     from viz import split
-    from viz.viewer.error_map import ErrorMap
-    from viz.viewer.page import Earlier, Recorded, analysis_document, machine_document, temperature_document
+    from viz.viewer.page import Earlier, ErrorMap, Recorded, analysis_document, machine_document, temperature_document
 
     assert folder.built is not None
     machine, nodes, earlier = folder.built.machine, split(folder.built.mesh), runs.before_last(folder)
@@ -131,9 +130,8 @@ def _documents(folder: Folder, tell: Progress) -> Iterator[dict[str, Any]]:
     order, cache, looks_of = runs.by_interest(folder), cache_folder(), plugins("sections").get("looks")
     standing(folder.case)  # one network for both of the following
     with ThreadPoolExecutor() as pool:
-        looks = looks_of and looks_of.cached_looks(
-            machine, nodes, cache
-        )  # to make them takes longer than all else of the first picture
+        # To make them takes longer than all else of the first picture
+        looks = looks_of and looks_of.cached_looks(machine, nodes, cache)
         shape = pool.submit(machine_document, folder.case.name, nodes, conductivity, looks)
         comparison = pool.submit(runs.current_comparison, folder, order[0])
         run = runs.fields(folder.case, order[0], nodes, FRAMES)

@@ -259,8 +259,7 @@ def save_case(folder: Path, model: Model, drafts: list[Draft], tell: Progress) -
 
     drafts : is empty afterwards: a large recording need not be there twice
     """
-    from measured.case import Case
-    from measured.case import Model as CaseModel
+    from measured.case import Case, Model as CaseModel
     from measured.recordings.readings import read_test
     from thermoscope.case_folder.doctor import examined
     from thermoscope.case_folder.folder import patient_of

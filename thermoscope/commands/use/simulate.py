@@ -20,8 +20,7 @@ from geom.text import counted
 from lumped.drives.coupled import coupled
 from lumped.integration.audit import Audit, audit
 from lumped.integration.runaway import checked_run
-from lumped.integration.simulate import Record
-from lumped.integration.simulate import simulate as integrated
+from lumped.integration.simulate import Record, simulate as integrated
 from lumped.model.network import Network, Row
 from thermoscope.bands import bands_requested, documents, posterior_of, predicted_bands
 from thermoscope.case_folder.cycle import Cycle, find_cycle, load_cycle

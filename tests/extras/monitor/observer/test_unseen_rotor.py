@@ -5,16 +5,25 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from extras.monitor.observer.learning import design_of, over, taught, unsettled
+from extras.monitor.observer.learning import design_of, taught, unsettled
 from extras.monitor.observer.process import bodies_of
-from extras.monitor.observer.process_noise import of_doubt
+from extras.monitor.observer.process_noise import of_doubt, thinned
 from thermoscope.case_folder.folder import load_case
 from validation.comparison.error_budget import model_of
-from validation.comparison.predict import predict
+from validation.comparison.predict import predict, record
 
 pytestmark = pytest.mark.nightly
 
 HUST = Path(__file__).parents[4] / "cases" / "hust-ipmsm"
+
+
+def over(design, test, measured):
+    """Samples of an observer along a test, from some of its sensors."""
+    test = thinned(test)
+    course, sensors = record(test, {}), [c for c in test.channels if c.name in measured]
+    y = np.column_stack([c.y for c in sensors])
+    around = {b: float(np.asarray(u, float).flat[0]) for b, u in course.boundaries.items()}
+    return list(design.started(sensors, y[0], around).follow(course, y))
 
 
 @pytest.fixture(scope="module")
@@ -33,7 +42,7 @@ def errors():
     for test in (t for t in folder.case.tests if t.role == "hold-out"):
         j = [c.name for c in test.channels].index("rotor")
         rotor = test.channels[j]
-        _, samples = over(design, test, ("winding", "stator"))
+        samples = over(design, test, ("winding", "stator"))
         plain = rotor.y - predict(network, test, values).y[:, j]
         out[test.name] = np.column_stack([plain, rotor.y - [s.at(rotor.row)[0] for s in samples]])
     return out
