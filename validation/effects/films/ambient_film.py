@@ -6,8 +6,7 @@ from typing import ClassVar
 from lumped.model.network import Network
 from lumped.model.quantities import AIR
 from lumped.model.sites import AXLE, ambient, outside, role, roleless, turning, turns
-from lumped.transfer.laws import Fixed, InputPower, Law, Power
-from lumped.transfer.laws import Radiation as FourthPower
+from lumped.transfer.laws import Fixed, InputPower, Law, Power, Radiation as FourthPower
 from validation.effects.base import Effect, Scene, with_parameter
 from validation.effects.build import film_unit, to_fluid
 
