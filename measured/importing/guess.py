@@ -421,7 +421,7 @@ def _left_out(source: Source, column: str) -> str:
     if words & SPARE:
         return "a spare channel, by its name"
     if words == {"bearing"} and any("longitude" in tokens(other) for other in source.labels.values()):
-        return "a heading, beside a longitude"
+        return "a compass heading, beside a place on the map"
     if words & SPREAD:
         return "a spread of readings, not a reading"
     if words & NOTHING and unit in WEAK:
