@@ -211,6 +211,7 @@ def prediction_checks(
     telling: Sequence[str],
     lone: Sequence[str] = (),
     aside: bool = False,
+    same: float = SAME,
 ) -> tuple[Check, ...]:
     """Does a step predict what was left out better than the model before it, and than no change?
 
@@ -218,6 +219,7 @@ def prediction_checks(
     lone : tests of which the later part alone was left out
     aside : a step that says of some readings, which are not predicted, that they mean something else: it gains nothing
         for the others, and must not cost them anything
+    same : times the error before, up to which what is likelier may predict
     """
     nats = [b.nats - a.nats for b, a in zip(after, before, strict=True)]
     was, now = rms(before), rms(after)
@@ -230,7 +232,7 @@ def prediction_checks(
     words = f"each part left out and predicted from the others: {fall(was, now)}, {better}{only}{parts}"
     none = float(np.sqrt(sum(f.no_change_K2s for f in after) / sum(f.seconds for f in after)))
     return (
-        Check("left out", sum(nats) > gain and now <= SAME * was, sum(nats), gain, words, part),
+        Check("left out", sum(nats) > gain and now <= same * was, sum(nats), gain, words, part),
         Check("no change", now < none, now, none, f"{now:.2f} K where a guess of no change leaves {none:.2f} K", part),
     )
 

@@ -278,7 +278,9 @@ def _effect_checks(
     alike = replace(fit, noise=bare.noise)  # else the shapes that two residuals were given outweigh what they predict
     added = parameter_values(fit.network, new.values)
     after = [fold_prediction(alike, fold, added, (*present, *names)) for fold in parts]
-    checks = prediction_checks(predictions[at], after, telling, tuple(lone), aside)
+    # A sensor that always reads wrong makes what it read likelier by itself: what was left out has to fall as well.
+    same = 1.0 if not aside and all(effect(name).fault for name in names) else SAME
+    checks = prediction_checks(predictions[at], after, telling, tuple(lone), aside, same)
     shows = tuple(visible_check(fit, n) for n in names) if aside else ()
     return (*(bound_check(fit, n) for n in names), *shows, *checks, _lost(changes, tests))
 

@@ -17,6 +17,7 @@ from validation.effects import effect
 from validation.noise import FOLLOWED
 from validation.parameters.unknowns import Unknowns, working
 from validation.revision.acceptance import (
+    FoldPrediction,
     bound_check,
     fold_prediction,
     folds,
@@ -65,6 +66,14 @@ def test_what_one_test_says_has_to_hold_in_the_other(loss, better):
     assert checks[0].passed == better
     assert not any(c.partial for c in checks)
     assert all(c.partial for c in prediction_checks(before, after, ["one"])), "a part of one test is no left-out error"
+
+
+@pytest.mark.parametrize(("rise", "effect", "fault"), [(0.995, True, True), (1.005, True, False), (1.02, False, False)])
+def test_a_sensor_that_is_always_wrong_has_to_lower_the_error_and_physics_may_leave_it(rise, effect, fault):
+    """What is likelier by 20 nats, and its error `rise` times the one before: 1 % shows in no two digits."""
+    was, now = ([FoldPrediction(nats, (k * 2.0) ** 2 * 3600, 1e6, 3600)] for nats, k in ((-50.0, 1.0), (-30.0, rise)))
+    assert prediction_checks(was, now, [])[0].passed == effect
+    assert prediction_checks(was, now, [], same=1.0)[0].passed == fault
 
 
 def test_a_test_left_out_is_predicted_by_a_fit_to_the_other():
