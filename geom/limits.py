@@ -32,7 +32,7 @@ class Limit:
         """What holds now."""
         text = os.environ.get(self.variable, str(self.usual)).replace("_", "")
         if not text.isdecimal() or not int(text):
-            raise InputError(f"{text!r} is no limit", self.variable, f"a whole number of {self.unit}, at least 1")
+            raise InputError(f"{text!r} is not a limit", self.variable, f"a whole number of {self.unit}, at least 1")
         return int(text)
 
     def check(self, amount: float, where: object, what: str = "asks for") -> None:

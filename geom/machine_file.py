@@ -49,7 +49,7 @@ def import_draft(
     suffix = path.suffix.lower()
     if suffix not in IMPORTERS:
         right = f"one of: {', '.join(IMPORTERS)}; a loss map with --machine MACHINE"
-        raise InputError(f"{path.suffix or 'no ending'} is no machine file of another program", str(path), right)
+        raise InputError(f"{path.suffix or 'no ending'} is not a machine file of another program", str(path), right)
     if suffix == DRAWING:
         return read_section(path, family_template, stack_mm, units)
     if stack_mm is not None or units:
@@ -160,7 +160,7 @@ def completed(sections: Mapping[str, Any], where: str) -> Mapping[str, Any]:
         return sections
     place, name, without = f"{where} [machine]", header.get("like"), header.get("without", [])
     if not isinstance(name, str) or name not in library():
-        raise InputError(f"like = {str(name)[:60]!r} is no machine that comes along", place, ", ".join(library()))
+        raise InputError(f"like = {str(name)[:60]!r} is not a machine that comes along", place, ", ".join(library()))
     original = completed(read_toml(library()[name], "a machine file"), name)
     new_header = {key: value for key, value in header.items() if key not in ("like", "without")}
     tables = _without(original, ["machine", "name"])
@@ -223,11 +223,11 @@ def _family(header: Mapping[str, Any], where: str) -> Family:
             raise InputError(f"unknown key {key!r}", f"{where} [machine]", f"known: {', '.join(_HEADER)}")
     for key, value in header.items():
         if not isinstance(value, str):
-            raise InputError(f"{key} = {str(value)[:60]} is no text", f"{where} [machine]", "words in quotes")
+            raise InputError(f"{key} = {str(value)[:60]} is not text", f"{where} [machine]", "words in quotes")
     available = families()
     if header.get("family") not in available:
         where = f"{where} [machine] family"
-        raise InputError(f"{header.get('family')!r} is no family", where, f"known: {', '.join(available)}")
+        raise InputError(f"{header.get('family')!r} is not a family", where, f"known: {', '.join(available)}")
     return available[header["family"]]
 
 

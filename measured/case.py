@@ -31,7 +31,7 @@ class Channel:
     y : (n_time,) readings (degC), NaN where nothing was read
     sigma_K : 1-sigma of the reading (calibration and placement)
     lag_s : time constant of the sensor (s)
-    model_K : slow misfit (K) that a model of this kind is not expected to get right; below it misfit is no evidence
+    model_K : slow misfit (K) that a model of this kind is not expected to get right; below it misfit is not evidence
     """
 
     name: str

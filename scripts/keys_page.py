@@ -18,7 +18,7 @@ HEAD = f"""# Keys of all files
 Every key that a file may have, what it is, and what it may be. This page, the schemas, the readers and their messages
 have the bounds from one table, `lumped/schemas/bounds.csv`. The bounds are far beyond any machine. What they refuse is
 a slip: a sign, a decimal point, a unit. Temperatures lie between {COLDEST:g} and {HOTTEST:g} degC.
-A number has to be finite, and true is no number. Names that are yours are written as NAME.
+A number has to be finite, and true is not a number. Names that are yours are written as NAME.
 
 """
 

@@ -18,7 +18,7 @@ def checked_result(path: Path) -> Path:
     """Where a result is kept: a file or nothing yet, in a folder or nothing yet; said before anything is computed."""
     for place, right, kind in ((path.parent, "folder", Path.is_dir), (path, "file", Path.is_file)):
         if (place.exists() or place.is_symlink()) and not kind(place):
-            raise InputError(f"is no {right}", str(place), f"a {right} for results: move it away or delete it")
+            raise InputError(f"is not a {right}", str(place), f"a {right} for results: move it away or delete it")
     return path
 
 
@@ -41,11 +41,11 @@ def checked_target(target: str | None) -> str | None:
         return target
     path, right = Path(str(target)), "a new file NAME.json, or - for stdout"
     if not target or path.is_dir():
-        raise InputError(f"{target!r} is no file to write to", "--json", right)
+        raise InputError(f"{target!r} is not a file to write to", "--json", right)
     if not path.parent.is_dir():
         raise InputError("lies in a folder that is not there", f"--json {path}", right)
     if path.exists() and (not path.is_file() or not _is_document(path)):
-        raise InputError("is there already and is no document of this tool: it stays", f"--json {path}", right)
+        raise InputError("is there already and is not a document of this tool: it stays", f"--json {path}", right)
     try:
         with TemporaryFile(dir=path.parent):  # by trying: /proc looks as if its owner might write there
             return target
@@ -64,7 +64,7 @@ def checked_out(out: Path | None) -> Path | None:
         return None
     right = "a folder for results, such as out/NAME"
     if not str(out) or "\0" in str(out) or (out.exists() and not out.is_dir()):
-        raise InputError("is no folder", f"--out {out}", right)
+        raise InputError("is not a folder", f"--out {out}", right)
     if (out / CASE).exists() or within_inputs(out):
         raise InputError("a case keeps its inputs there: results would be mixed with them", f"--out {out}", right)
     return out

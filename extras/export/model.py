@@ -124,7 +124,7 @@ def reach_of(signal: Signal) -> float:
 
 
 def _reaches(signals: Sequence[Signal]) -> Ranges:
-    """Input -> how far tables have to reach; what marks a single test is no input."""
+    """Input -> how far tables have to reach; what marks a single test is not an input."""
     reach = {s.name: (s, reach_of(s)) for s in signals if not s.name.startswith(th.LAW_RUNNING)}
     return {name: (-end if s.low and s.low < 0.0 else 0.0, end) for name, (s, end) in reach.items()}
 

@@ -83,7 +83,7 @@ def framed(machine: th.MachineDescription, bodies: Sequence[Body]) -> th.Array:
 
 
 class Warm:
-    """Temperatures for points that are no nodes: of the nearest nodes of the part that a body stands for."""
+    """Temperatures for points that are not nodes: of the nearest nodes of the part that a body stands for."""
 
     def __init__(self, nodes: th.SplitMesh, T: th.Array, limits: tuple[float, float] | None = None) -> None:
         self.nodes, self.T = nodes, T

@@ -74,7 +74,7 @@ def optimise(
     from thermoscope import InputError
 
     if method not in METHODS:
-        raise InputError(f"'{method}' is no method", "--method", ", ".join(METHODS))
+        raise InputError(f"'{method}' is not a method", "--method", ", ".join(METHODS))
     request = DesignRequest(
         th.read_limits(limit or ()), torque, read_at(at or ()), read_bounds(vary or ()), robust, cycle
     )

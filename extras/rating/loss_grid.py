@@ -119,7 +119,7 @@ def with_losses(network: Network, grid: LossGrid, where: str) -> Network:
     for name in grid.watts:
         if name not in kinds:
             choices = ", ".join(sorted({_bare(s) for s in network.sources} | {s.kind for s in network.sources}))
-            raise InputError(f"'{name}_W' is no loss of the network", where, f"known: {choices}")
+            raise InputError(f"'{name}_W' is not a loss of the network", where, f"known: {choices}")
     sources = []
     for s in (s for s in network.sources if not s.name.endswith(th.EDDY)):  # a map says the whole of a copper loss
         for name in [n for n in (s.name, _bare(s), s.kind) if n in grid.watts][:1]:

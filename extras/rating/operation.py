@@ -58,13 +58,13 @@ def operation(
     for name in fixed:
         if name not in (*reads, *network.boundaries):
             raise InputError(
-                f"'{name}' is no input or boundary of the model",
+                f"'{name}' is not an input or boundary of the model",
                 "--at",
                 th.suggestion(name, (*reads, *network.boundaries)),
             )
     for name in carry:
         if name not in reads:
-            raise InputError(f"'{name}' is no input of the model", "--load", th.suggestion(name, tuple(reads)))
+            raise InputError(f"'{name}' is not an input of the model", "--load", th.suggestion(name, tuple(reads)))
     loads = tuple(carry) or tuple(n for n in reads if network.measures(n) in th.LOADS)
     if not loads:
         raise InputError(

@@ -85,7 +85,7 @@ def _split(address: str) -> SplitResult:
     try:
         return urlsplit(address)
     except ValueError:
-        raise web.HTTPForbidden(text="the host or the origin of the request is no address") from None
+        raise web.HTTPForbidden(text="the host or the origin of the request is not an address") from None
 
 
 def served(folders: Mapping[str, Path], name: str) -> Path | None:

@@ -72,7 +72,7 @@ class Display:
         self.select(self.state.sensor)
 
     def select(self, name: str) -> None:
-        """The curves of a sensor; a name that is no sensor of the test means the first one."""
+        """The curves of a sensor; a name that is not a sensor of the test means the first one."""
         names = [s["name"] for s in self.state.sensors]
         if self.look is None or not names:
             return

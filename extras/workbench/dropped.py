@@ -51,7 +51,7 @@ class Dropped:
         """With the value of something that was not recorded, "" for none again."""
         value = th.number(text)
         if text.strip() and value != value:
-            raise InputError(f"'{text}' is no number", name, "such as 21.5")
+            raise InputError(f"'{text}' is not a number", name, "such as 21.5")
         rest = {k: v for k, v in self.constants.items() if k != name}
         return replace(self, constants={**rest, name: value} if text.strip() else rest)
 
@@ -99,7 +99,7 @@ class Dropped:
 
 
 def read(files: Sequence[Path], network: Network, tell: th.Progress) -> Dropped:
-    """Recordings with the guesses of `thermoscope test new`. Raises InputError for a file that is no record."""
+    """Recordings with the guesses of `thermoscope test new`. Raises InputError for a file that is not a record."""
     target, recordings = th.target_of(network), []
     for file in files:
         tell(f"reading {file.name}")

@@ -68,7 +68,7 @@ class Drawing:
         for part in self.parts:
             if not part.done():
                 part.set_exception(fault)
-                part.exception()  # asked for: a part that no tab waits for is no error
+                part.exception()  # asked for: a part that no tab waits for is not an error
 
 
 @dataclass

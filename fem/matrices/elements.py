@@ -43,7 +43,7 @@ class HasTensor(Protocol):
 
 @dataclass(frozen=True)
 class Elements:
-    """One unknown per corner; of quadratic ones also one at the middle of every edge that bends and is no upright
+    """One unknown per corner; of quadratic ones also one at the middle of every edge that bends and is not an upright
     diagonal.
 
     tets (nt, 4) corners;  cells (nt, 4 or 10) : nodes of each, corners first;  xyz (n, 3) : points of the unknowns (m)

@@ -54,7 +54,7 @@ def _with_base(machine: Machine, name: str, other: Machine, where: str) -> Machi
     outer = {renamed[piece]: theirs[piece] for piece in PIECES if piece in theirs}
     mine = films.get("outer", {})
     if not isinstance(mine, Mapping):
-        raise InputError(f"outer = {str(mine)[:60]} is no table", f"{machine.name} [films]", "PART = W/m2/K pairs")
+        raise InputError(f"outer = {str(mine)[:60]} is not a table", f"{machine.name} [films]", "PART = W/m2/K pairs")
     sections["films"] = {**films, "outer": {**mine, **outer}}
     return replace(machine, parts=(*machine.parts, *more), sections=sections)
 

@@ -75,7 +75,7 @@ def material(name: str, where: str = "[materials]") -> Material:
 
 
 def filled(name: str, fill: float, impregnation: float, along: float | None = None) -> Material:
-    """A winding material at another fill and impregnation; a material that is no mixture stays as it is.
+    """A winding material at another fill and impregnation; a material that is not a mixture stays as it is.
 
     fill : share of conductor in the cross-section; impregnation : share of the rest that resin fills, air the remainder
     along : share of wire length along the axis, None for the material's

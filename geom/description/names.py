@@ -41,7 +41,7 @@ def plain_header(text: str) -> str:
 
 
 def checked_document(node: Any, file: str, way: tuple[str, ...] = ()) -> None:
-    """InputError for a key anywhere in a document that is no plain name, or a text that cannot be printed.
+    """InputError for a key anywhere in a document that is not a plain name, or a text that cannot be printed.
 
     way : keys of the tables around the node
     """

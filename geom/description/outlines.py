@@ -68,11 +68,11 @@ def _group(group: Mapping[str, Any], where: str) -> Outline:
 
 def _loop(points: Any, where: str) -> Loop:
     if not isinstance(points, list) or not 2 <= len(points) <= MOST_POINTS:
-        raise InputError("is no shape", where, _RIGHT)
+        raise InputError("is not a shape", where, _RIGHT)
     for point in points:
         numbers = isinstance(point, list) and len(point) in (2, 3)
         if not numbers or not all(isinstance(x, int | float) and abs(x) <= LONGEST_MM for x in point):
-            raise InputError(f"{str(point)[:60]} is no point", where, f"{_RIGHT}, up to {LONGEST_MM:g} mm")
+            raise InputError(f"{str(point)[:60]} is not a point", where, f"{_RIGHT}, up to {LONGEST_MM:g} mm")
     return tuple((1e-3 * p[0], 1e-3 * p[1], float(p[2]) if len(p) == 3 else 0.0) for p in points)
 
 

@@ -12,11 +12,11 @@ from geom.limits import TOML_BYTES
 
 
 def read_toml(path: Path, right: str) -> dict[str, Any]:
-    """The tables of a TOML file; a byte-order mark at its start is no fault. right : what the file should be."""
+    """The tables of a TOML file; a byte-order mark at its start is not a fault. right : what the file should be."""
     if not path.exists():
         raise InputError("no such file", str(path), right)
     if not path.is_file():
-        raise InputError("is no file", str(path), right)
+        raise InputError("is not a file", str(path), right)
     TOML_BYTES.check(path.stat().st_size, path, "holds")
     try:
         document = tomllib.loads(path.read_text(encoding="utf-8-sig"))

@@ -36,7 +36,7 @@ PHASES = 3
 def template(draft: Draft, name: str) -> None:
     """Frame and cooling of a template. InputError for a name that is none."""
     if name not in TEMPLATES:
-        raise InputError(f"{name!r} is no template", "--family-template", f"one of: {', '.join(TEMPLATES)}")
+        raise InputError(f"{name!r} is not a template", "--family-template", f"one of: {', '.join(TEMPLATES)}")
     for section, values in TEMPLATES[name].items():
         draft.assume(section, f"template {name!r}: another one by --family-template", **values)
 

@@ -58,7 +58,7 @@ def read_drawing(path: Path, units: str = "") -> Drawing:
             drawing.notes |= {key.lower(): value for key, value in _NOTE.findall(text)}
         units = units or drawing.notes.get("units", "")
         if units and units not in UNITS:
-            raise InputError(f"{units[:20]!r} is no unit of a drawing", str(path), f"one of: {', '.join(UNITS)}")
+            raise InputError(f"{units[:20]!r} is not a unit of a drawing", str(path), f"one of: {', '.join(UNITS)}")
         drawing.unit = drawing.unit or UNITS.get(units, 0.0)
         if not drawing.unit:
             right = f"--units, one of: {', '.join(UNITS)}; or a text units = mm in the drawing"

@@ -154,7 +154,7 @@ def _stator(draft: Draft, file: File) -> tuple[float, float, float]:
         wire = slot.filled
     except (ValueError, ZeroDivisionError):
         right = "Slot_Opening, Tooth_Width, Slot_Depth and Slot_Corner_Radius that leave a slot"
-        raise InputError("the slot is no shape", f"{file.path} [Dimensions]", right) from None
+        raise InputError("the slot is not a shape", f"{file.path} [Dimensions]", right) from None
     dimensions = {
         "Stator_Lam_Dia": "outer_diameter_mm",
         "Stator_Bore": "bore_diameter_mm",

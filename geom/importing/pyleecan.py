@@ -79,7 +79,7 @@ class PathSlot:
 
 
 def read_pyleecan(path: Path, family_template: str) -> Draft:
-    """The draft of a machine file. Raises InputError for what is no machine with a rotor inside its stator."""
+    """The draft of a machine file. Raises InputError for what is not a machine with a rotor inside its stator."""
     document = _document(path)
     kind = str(document.get("__class__", ""))
     version = str(document.get("__version__", "")).removeprefix("pyleecan_")
@@ -115,7 +115,7 @@ def read_pyleecan(path: Path, family_template: str) -> Draft:
 
 def _document(path: Path) -> Node:
     def refuse(word: str) -> None:
-        raise ValueError(f"{word} is no number of JSON")
+        raise ValueError(f"{word} is not a number of JSON")
 
     def table(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
         out = dict[str, Any]()
@@ -130,10 +130,10 @@ def _document(path: Path) -> Node:
     except (ValueError, RecursionError) as fault:
         raise InputError(f"not readable as JSON: {str(fault)[:80]}", str(path), RIGHT) from None
     if not isinstance(document, dict):
-        raise InputError("is no table", str(path), RIGHT)
+        raise InputError("is not a table", str(path), RIGHT)
     kind = document.get("__class__")
     if not isinstance(kind, str) or not kind.startswith("Machine"):
-        raise InputError(f"__class__ = {str(kind)[:40]!r} is no machine", str(path), RIGHT)
+        raise InputError(f"__class__ = {str(kind)[:40]!r} is not a machine", str(path), RIGHT)
     checked_document({k: v for k, v in document.items() if k in ("name", "__version__")}, str(path))
     return document
 
@@ -155,7 +155,7 @@ def _parts(node: Node, key: str, where: str) -> list[Node]:
     """A list of tables that may be missing."""
     value = node.get(key) or []
     if not isinstance(value, list) or len(value) > MOST_PARTS or not all(isinstance(part, Mapping) for part in value):
-        raise InputError(f"{key} is no list of up to {MOST_PARTS} tables", where, RIGHT)
+        raise InputError(f"{key} is not a list of up to {MOST_PARTS} tables", where, RIGHT)
     return value
 
 
@@ -221,7 +221,7 @@ def _lines(node: Node, key: str, where: str) -> list[tuple[complex, float, compl
     """Begin, bulge and end of each line; arcs by their class."""
     lines = node.get(key)
     if not isinstance(lines, list) or not 1 <= len(lines) <= 1000:
-        raise InputError(f"{key} is no list of lines", where, "Segment and Arc1 to Arc3 with begin and end")
+        raise InputError(f"{key} is not a list of lines", where, "Segment and Arc1 to Arc3 with begin and end")
     return [_piece(line, f"{where}.{key}[{k}]") for k, line in enumerate(lines)]
 
 
@@ -232,7 +232,7 @@ def _piece(line: Any, where: str) -> tuple[complex, float, complex]:
         if max(abs(a), abs(b)) > LARGEST_M:
             raise ValueError
     except (KeyError, TypeError, ValueError, AttributeError):
-        raise InputError("is no line", where, "__class__, begin and end, each a complex number in m") from None
+        raise InputError("is not a line", where, "__class__, begin and end, each a complex number in m") from None
     if kind == "Segment":
         return a, 0.0, b
     if kind == "Arc3":

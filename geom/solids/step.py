@@ -102,7 +102,7 @@ def _role(entry: Any, where: str) -> Identity:
     fine = isinstance(table, Mapping) and set(table) <= {"role", "turns"} and table.get("role", words[0]) in words
     if not fine or not isinstance(table.get("turns", True), bool):
         right = f"one of {', '.join(words)}; or {{ role = ..., turns = true }}"
-        raise InputError(f"{entry!r} is no role", where, right)
+        raise InputError(f"{entry!r} is not a role", where, right)
     turns = table.get("turns")
     return Identity(Role(table["role"]) if "role" in table else None, None if turns is None else bool(turns))
 

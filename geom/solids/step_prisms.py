@@ -75,9 +75,11 @@ def _solids(path: Path, options: Mapping[str, Any]) -> dict[str, list[cq.Solid]]
     axis, origin = options.get("axis", "z"), options.get("origin_mm", [0.0, 0.0, 0.0])
     where = f"{step_sidecar(path)} [import]"
     if not isinstance(axis, str) or axis not in _ROTATIONS:
-        raise InputError(f"{axis!r} is no axis", f"{where} axis", f"one of {', '.join(_ROTATIONS)}")
+        raise InputError(f"{axis!r} is not an axis", f"{where} axis", f"one of {', '.join(_ROTATIONS)}")
     if not (isinstance(origin, list) and len(origin) == 3 and all(_is_length(x) for x in origin)):
-        raise InputError(f"{origin!r} is no point", f"{where} origin_mm", f"[x, y, z], each within {LARGEST_MM:g} mm")
+        raise InputError(
+            f"{origin!r} is not a point", f"{where} origin_mm", f"[x, y, z], each within {LARGEST_MM:g} mm"
+        )
     rotation = cq.Location(cq.Vector(), cq.Vector(*_ROTATIONS[axis][0]), _ROTATIONS[axis][1])
     translation = cq.Location(cq.Vector(*(-float(x) for x in origin)))
     by_name: dict[str, list[cq.Solid]] = {}
@@ -108,7 +110,7 @@ def _without_excluded(
 ) -> dict[str, list[cq.Solid]]:
     patterns, where = options.get("leave_out", []), f"{step_sidecar(path)} [import] leave_out"
     if not (isinstance(patterns, list) and all(isinstance(p, str) for p in patterns)):
-        raise InputError(f"{patterns!r} is no list of names", where, 'such as ["bolt*"]')
+        raise InputError(f"{patterns!r} is not a list of names", where, 'such as ["bolt*"]')
     for pattern in patterns:
         if not any(fnmatchcase(name, pattern) for name in solids):
             raise no_solid(pattern, solids, where)

@@ -23,7 +23,7 @@ class PlaceError:
 
     @property
     def total_K(self) -> float:
-        """Their sum: errors of discretisation are no chance, so they need not cancel. 0 where nothing is estimated."""
+        """Their sum: errors of discretisation are not chance, so they need not cancel. 0 where nothing is estimated."""
         return sum(e for e in (self.mesh_K, self.condensation_K, self.time_K) if e is not None)
 
     def document(self) -> dict[str, Any]:

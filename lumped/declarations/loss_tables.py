@@ -117,7 +117,7 @@ def deducted(table: Table, kinds: Mapping[str, str]) -> tuple[str, ...]:
     others = [name for name, kind in kinds.items() if kind != MEASURED]
     for name in less:
         if name not in others:
-            raise table.error(f"less = '{name}' is no loss", f"a loss that is not measured: {', '.join(others)}")
+            raise table.error(f"less = '{name}' is not a loss", f"a loss that is not measured: {', '.join(others)}")
     return less
 
 

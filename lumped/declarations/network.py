@@ -40,7 +40,7 @@ def read_identities(
     around = top.tables("boundaries")
     for name, table in around.items():
         if name not in boundaries:
-            raise table.error(f"'{name}' is no boundary", suggestion(name, boundaries))
+            raise table.error(f"'{name}' is not a boundary", suggestion(name, boundaries))
     out = {
         name: statement
         for name, table in {**nodes, **around}.items()

@@ -105,4 +105,4 @@ def _coefficient(entry: Any, where: str) -> float:
         if key in ("gap_mm", "h_W_m2K") and value != 0 and bounds(key).hold(value):
             return K_AIR / (value * 1e-3) if key == "gap_mm" else float(value)
     right = "{gap_mm = 0.03} or {h_W_m2K = 900}, a positive number"
-    raise InputError(f"{excerpt(entry)} is no contact", where, right)
+    raise InputError(f"{excerpt(entry)} is not a contact", where, right)

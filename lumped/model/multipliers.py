@@ -40,7 +40,7 @@ def _targets(network: Network, parameter: Parameter, valid: set[str]) -> list[tu
     for target, _ in thermal:
         if target not in valid:
             raise InputError(
-                f"target '{target}' is no link, source or capacity group",
+                f"target '{target}' is not a link, source or capacity group",
                 f"parameter '{parameter.name}' of {network.title}",
                 f"known: {', '.join(sorted(valid))}",
             )

@@ -43,7 +43,7 @@ class Topology:
 
     @cached_property
     def bodies(self) -> tuple[str, ...]:
-        """Parts and nodes that no stream passes and that are no fluid."""
+        """Parts and nodes that no stream passes and that are not fluid."""
         solid = {p.part: None for p in self.network.places.values() if p.kind in ("part", "node")}
         return tuple(b for b in solid if b not in self.fluids)
 

@@ -26,7 +26,7 @@ class Bounds:
     whole: bool = False
 
     def hold(self, value: Any) -> bool:
-        """Is it a number within the bounds? True and false are no numbers, and nan lies nowhere."""
+        """Is it a number within the bounds? True and false are not numbers, and nan lies nowhere."""
         if isinstance(value, bool) or not isinstance(value, int | float):
             return False
         return self.low <= value <= self.high and (not self.whole or math.floor(value) == value)

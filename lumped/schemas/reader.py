@@ -36,7 +36,7 @@ class Table:
 
     def __init__(self, data: Any, where: str) -> None:
         if not isinstance(data, Mapping):
-            raise InputError(f"{excerpt(data)} is no table", where, "key = value pairs")
+            raise InputError(f"{excerpt(data)} is not a table", where, "key = value pairs")
         self.data, self.where = data, where
         self.requested: set[str] = set()
 

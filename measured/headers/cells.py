@@ -10,7 +10,7 @@ from measured.headers.layout import MISSING
 from measured.headers.words import VOCABULARY, is_time, quantities_of, roles_of
 
 NUMBER = re.compile(r"[-+]?(\d+([.,]\d*)?|[.,]\d+)([eE][-+]?\d+)?")
-# Digits in threes: with a decimal part, in several groups, or with a sign between them that is no decimal sign.
+# Digits in threes: with a decimal part, in several groups, or with a sign between them that is not a decimal sign.
 GROUPED = re.compile(
     r"[-+]?[1-9]\d{0,2}(?:(?:\.\d{3})+,\d+|(?:,\d{3})+\.\d+|(?:\.\d{3}){2,}|(?:,\d{3}){2,}"
     r"|(?:['\u2019 \u00a0\u202f]\d{3})+(?:[.,]\d+)?)"
@@ -146,7 +146,7 @@ def is_unit(text: str) -> bool:
 TIMES = ("us", "ms", "s", "min", "h")  # that are also the ends of names: Wicklung US, I_sek, T_wdg_min
 BRACKETS = re.compile(r"\[([^\[\]]+)\]|\(([^()]+)\)|\{([^{}]+)\}|<([^<>]+)>")
 INNER = re.compile(r"^([^,]+),\s*([^\s,()]+)\s*(\(.+\))$")  # Temp, °F (LGR S/N: 1, LBL: winding)
-SERIAL = re.compile(r"(?:LGR |SEN )?S/N: ?\w+(?:, )?")  # of a logger and its sensor: LGR is no bearing
+SERIAL = re.compile(r"(?:LGR |SEN )?S/N: ?\w+(?:, )?")  # of a logger and its sensor: LGR is not a bearing
 BEFORE = re.compile(r"^(?:M\d\d:\s*|(?=[°º]))(\S+)\s+(\S.*)$")  # M00: °C Wicklung, °C Wicklung
 BARS = re.compile(r'^"?([^|"]+)"?\|"?([^|"]*)"?(?:\|[^|]*)+$')  # MotorTemp|"C"|0.0|300.0|5
 RATIO = re.compile(r"^(.*[^\W_])_(?!per_)([a-z]+\d?|1)(?:_per)?_(s|sec|min|h|hr)$")  # speed_rad_s, flow_l_per_min

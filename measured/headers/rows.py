@@ -32,7 +32,7 @@ def layout(rows: Sequence[Row], where: str) -> Layout:
     widths = Counter(len(trimmed(row)) for row in head if _readings(row))
     if not widths:
         raise InputError(
-            "no rows of readings in it: it is no record", where, "columns of numbers, with a header or without"
+            "no rows of readings in it: it is not a record", where, "columns of numbers, with a header or without"
         )
     most = widths[max(widths, key=lambda n: n * widths[n])]
     width = max(n for n, count in widths.items() if count >= 0.5 * most)
@@ -213,7 +213,7 @@ def _first(rows: Sequence[Row], width: int, where: str) -> int:
             while i and len(rows[i - 1]) >= len(rows[i]) and _kinds(rows[i - 1], width) == _kinds(rows[i], width):
                 i -= 1  # a remark behind the readings of a first row
             return i
-    raise InputError("fewer than three rows of readings: it is no record", where, "at least 3 rows of numbers")
+    raise InputError("fewer than three rows of readings: it is not a record", where, "at least 3 rows of numbers")
 
 
 def _kinds(row: Row, width: int) -> list[bool]:

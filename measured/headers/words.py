@@ -60,7 +60,7 @@ PARTS = frozenset().union(*ROLES.values())
 
 
 def axis_of(name: str) -> str:
-    """ "id" of i_d, Id, IdFbk, i_sd and the like; "iq", "ialpha", "ibeta"; "" for what is no component of a current."""
+    """ "id" of i_d, Id, IdFbk, i_sd and the like; "iq", "ialpha", "ibeta"; "" for what is not part of a current."""
     pointed = re.sub(r"(?<=[a-z])(?=[A-Z])", "_", name).lower()
     return f"i{match[1] or match[2]}" if (match := AXIS.search(pointed)) else ""
 
@@ -162,7 +162,7 @@ def _end(word: str, words: frozenset[str]) -> int:
 
 def _inside(word: str, words: frozenset[str]) -> bool:
     inside = {k for k in words if (len(k) >= SHORTEST or k[0] >= IDEOGRAPHS) and k in word}
-    return any(k[0] >= IDEOGRAPHS or word.find(k) != 1 or word[0] == "t" for k in inside)  # "boven" is no oven
+    return any(k[0] >= IDEOGRAPHS or word.find(k) != 1 or word[0] == "t" for k in inside)  # "boven" is not an oven
 
 
 def is_time(label: str) -> bool:

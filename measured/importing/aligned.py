@@ -99,7 +99,7 @@ def common(
 def longest_part(
     first: Recording, limit_s: float, columns: Sequence[str] = ()
 ) -> tuple[tuple[float, float | None], tuple[str, ...]]:
-    """Of a recording with gaps beyond a limit (s) that are no steps of its own, the longest part; a note.
+    """Of a recording with gaps beyond a limit (s) that are not steps of its own, the longest part; a note.
 
     columns : that have to be known throughout
     """
@@ -120,7 +120,7 @@ def longest_part(
     k = int(np.argmax(ends - begins))
     begin, end = float(begins[k]), float(ends[k])
     if columns and end - begin < LEAST * (ends[-1] - begins[0]):
-        return longest_part(first, limit_s)  # readings so far apart are no gaps: what reads them says what is lacking
+        return longest_part(first, limit_s)  # readings so far apart are not gaps: what reads them says what is lacking
     start, stop, column = gaps[0]
     what = f"no {f'{column!r} in' if column else 'rows of'} {first.name} from {start:.6g} s to {stop:.6g} s"
     return (begin, end), (f"{what}: the test is its longest part without a gap, {begin:.6g} to {end:.6g} s",)

@@ -569,7 +569,7 @@ def is_second_clock(source: Source, column: str) -> bool:
 
 
 def _is_named(source: Source, column: str) -> bool:
-    """Has it a name for time, and no unit of something else: "Data [°C]" is no date?"""
+    """Has it a name for time, and no unit of something else: "Data [°C]" is not a date?"""
     return is_time(source.labels[column]) and unit_of(source.units[column]) in ("", *TIME_UNITS)
 
 

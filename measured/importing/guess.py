@@ -149,7 +149,7 @@ class Guess:
 
 
 def guesses(source: Source, clock: Sequence[str], target: Target) -> list[Guess]:
-    """One per column that is no clock."""
+    """One per column that is not a clock."""
     every = _by_readings(source, [guess(source, c, target) for c in source.cells if c not in clock], target)
     every = _cold_start_outliers(source, _read(source, _without_functions(source, every), target))
     kelvin = sum(g.unit == "K" for g in every if g.quantity == "temperature")

@@ -68,7 +68,7 @@ def read_loss_map(file: Path, units: Mapping[str, str], rated_rpm: float) -> Los
     for quantity, unit in units.items():
         if quantity not in (*AXES.values(), "power") or unit not in QUANTITIES[quantity].units:
             right = "speed=rad/s, torque=kN*m, current=mA, power=kW and the like"
-            raise InputError(f"'{quantity}={unit}' is no unit of a loss map", "--units", right)
+            raise InputError(f"'{quantity}={unit}' is not a unit of a loss map", "--units", right)
     columns = _columns(file)
     names = _axis_names(columns, file)
     filled = [name for name, (_, x) in columns.items() if np.isfinite(x).any() and name not in names.values()]

@@ -118,7 +118,7 @@ def read_source(file: Path) -> Source:
 def read_sources(file: Path) -> list[Source]:
     """Any file a recorder writes; of a workbook all sheets with the columns of the largest, or with its other signals.
 
-    InputError where it is no record, MissingDependency where a package is not there.
+    InputError where it is not a record, MissingDependency where a package is not there.
     """
     if file.is_dir():
         raise InputError("is a folder", str(file), f"the recordings in it, such as {file}/*.csv")
@@ -127,7 +127,7 @@ def read_sources(file: Path) -> list[Source]:
     suffix = file.suffix.lower()
     if suffix in MODELS:
         raise InputError(
-            "describes a machine or a model: it is no record", str(file), "readings over time, such as a CSV"
+            "describes a machine or a model: it is not a record", str(file), "readings over time, such as a CSV"
         )
     if suffix in BOOKS:
         return _of_sheets(file)

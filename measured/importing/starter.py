@@ -42,7 +42,7 @@ HEATS = tuple(POWERS)  # in the order in which a record tells the heat
 PLATINUM = re.compile(r"(?i)pt[ -]?10{2,3}(?!\d)")  # the number is part of the sensor's name
 EXHAUSTED = "the air that leaves the machine, beside a room"
 STILL = 0.1  # of the largest rise: what warms by less is hardly a part of the machine
-MOST = (2.0, 98.0)  # per cent of the readings between which they are no outliers
+MOST = (2.0, 98.0)  # per cent of the readings between which they are not outliers
 COLD_K = 3.0  # by which a room may be warmer than the parts at the start
 SPREAD = 1.0  # prior of everything here, in powers of e
 
@@ -152,7 +152,7 @@ def of_machine(columns: Columns) -> Columns:
 
 
 def _without_exhaust(columns: Columns) -> Columns:
-    """Without air that leaves the machine, which beside a room is no boundary: the machine heats it."""
+    """Without air that leaves the machine, which beside a room is not a boundary: the machine heats it."""
     return [(s, Guess(g.column, "", doubt=EXHAUSTED) if _leaves(s, g) else g) for s, g in columns]
 
 
@@ -189,7 +189,7 @@ BOUNDARIES = {Role.AMBIENT: "ambient", Role.COOLANT: "coolant"}
 
 
 def place_of(g: Guess, label: str) -> str:
-    """A node called after the column, or the boundary that its name means; "" for what is no temperature."""
+    """A node called after the column, or the boundary that its name means; "" for what is not a temperature."""
     if g.place and g.quantity == "temperature":
         return g.place  # as the user said
     if g.quantity != "temperature" or is_setpoint(label):

@@ -50,7 +50,7 @@ TITLE = re.compile(rf"(?:.*\.)?_*(?:{'|'.join(SERIES[0])})_*")  # metric.__name_
 ARROW = re.compile(r"^(\d{1,2}:\d{2}:\d{2}[.,]\d+) -> ", re.MULTILINE)  # a serial monitor's time before each line
 FORTRAN = re.compile(r"(?<=[.\d]\d)[Dd](?=[-+]\d\d\b)")  # 2.4D+01
 KEYED = re.compile(r"\s*([^\W\d][^:=,;\t]*?)\s*[:=]\s*(\S.*)")
-BOTH_SIGNS = re.compile(r"(?<![\d.:/-])\d+\.\d+(?![\d.:/-])")  # a number with a point, which is no date
+BOTH_SIGNS = re.compile(r"(?<![\d.:/-])\d+\.\d+(?![\d.:/-])")  # a number with a point, which is not a date
 
 Columns = list[Any]
 
@@ -280,7 +280,7 @@ def _raw(rows: Sequence[Sequence[str | None]], width: int) -> Columns:
 
 
 def _pair(cell: str) -> tuple[str, str]:
-    """Name and reading, as in "T1: 23.5"; "Mo. 03.06.2024 23:40" is no reading of 40."""
+    """Name and reading, as in "T1: 23.5"; "Mo. 03.06.2024 23:40" is not a reading of 40."""
     match = None if is_date(cell) else KEYED.fullmatch(cell)
     return (match[1], match[2]) if match else ("", cell)
 
@@ -311,7 +311,7 @@ def encoding_of(parts: Callable[[], Iterable[bytes]], file: Path) -> str:
             return encoding
         if b"\0" in part:
             raise InputError(
-                "holds zero bytes, so it is no text: it is no record",
+                "holds zero bytes, so it is not text: it is not a record",
                 str(file),
                 "CSV or other text, .xlsx, .tdms, .mf4, .parquet or .mat",
             )

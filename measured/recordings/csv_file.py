@@ -258,7 +258,7 @@ def _checked(file: Path, size: int) -> Iterator[bytes]:
     decode, start = getincrementaldecoder("utf-8")().decode, 0
     for part in chain(chunks(file, size), [b""]):
         if b"\0" in part:
-            raise InputError("holds zero bytes, so it is no text", str(file), "CSV as UTF-8 text")
+            raise InputError("holds zero bytes, so it is not text", str(file), "CSV as UTF-8 text")
         try:
             decode(part, not part)
         except UnicodeDecodeError as fault:

@@ -128,7 +128,7 @@ def is_missing(cell: object) -> bool:
 
 
 def as_number(cell: object) -> float | None:
-    """The number in a cell, NaN where nothing was read, None where it is no number."""
+    """The number in a cell, NaN where nothing was read, None where it is not a number."""
     if isinstance(cell, str):
         text = cell.strip()
         return float(text) if NUMBER.fullmatch(text) else float("nan") if is_missing(text) else None
@@ -156,7 +156,7 @@ def _numbers(table: DataTable, name: str, file: Path) -> Array:
     if None in values:
         row = values.index(None)
         raise InputError(
-            f"'{column[row]}' is no number",
+            f"'{column[row]}' is not a number",
             cell(file, name, row, table.line),
             "a number with a decimal point, or nothing where nothing was read",
         )

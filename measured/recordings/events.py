@@ -58,7 +58,9 @@ def read_events(name: str, table: Table, folder: Path) -> Events:
 def _value(word: Any, where: str) -> float:
     number = WORDS.get(word.strip().lower()) if isinstance(word, str) else word
     if number is None or not bounds("inputs").hold(number):
-        raise InputError(f"{excerpt(word)} is no state of an input", where, f'"on", "off", or {bounds("inputs").words}')
+        raise InputError(
+            f"{excerpt(word)} is not a state of an input", where, f'"on", "off", or {bounds("inputs").words}'
+        )
     return float(number)
 
 

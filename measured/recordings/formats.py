@@ -57,13 +57,13 @@ def recording(path: Path) -> Path:
     if path.is_file():
         return path
     if path.exists():
-        raise InputError("is no file", str(path), "a recording")
+        raise InputError("is not a file", str(path), "a recording")
     here = sorted(path.parent.iterdir()) if path.parent.is_dir() else []
     stem = stem_of(path)
     twins = [p for p in here if _suffix(p) and p.name[: len(stem)] == stem and stem_of(p) == stem]
     for twin in twins:
         if not twin.is_file():
-            what = "is a link that leads nowhere" if not twin.exists() else "is no file"
+            what = "is a link that leads nowhere" if not twin.exists() else "is not a file"
             raise InputError(what, str(twin), "a recording")
     if len(twins) > 1:
         names = " and ".join(twin.name for twin in twins)

@@ -221,7 +221,7 @@ def _means(sheet: Sheet, network: Network) -> list[Sensor]:
     for mean in sheet.means:
         for name in mean.of:
             if name not in column_of:
-                what = f"averages '{name}', which is no temperature column of the machine"
+                what = f"averages '{name}', which is not a temperature column of the machine"
                 raise InputError(what, mean.where, suggestion(name, column_of))
     return [
         Sensor(Channel(m.name, m.place, row_of(network, m.place, (), m.where), NONE, m.sigma_K, m.lag_s), m.of)

@@ -53,7 +53,7 @@ MEMORY_UNIT = {
 ROOM_K, ROOM_F = (253.0, 318.0), (59.0, 95.0)  # where a machine at rest starts, in K and in degF
 LONGEST = 40  # characters
 SWITCHED = ("share", "flow_share", "fraction")  # what true and false can be
-LARGEST = 1e9  # of anything that is no temperature, in the unit of memory
+LARGEST = 1e9  # of anything that is not a temperature, in the unit of memory
 _ONE = r"(?:1|[A-Za-zµμΩ°_]+)(?:(?:\*\*|\^)-?[1-4])?"
 UNIT = re.compile(rf"{_ONE}(?:\s*[*/·]\s*{_ONE})*|%")  # no powers beyond the fourth: pint would compute any
 
@@ -75,7 +75,7 @@ def checked_unit(of: str, unit: Any, where: str) -> str:
         more = f" (or {', '.join(others)})" if others else ""
         raise InputError("the unit is missing", where, f'write unit = "{first}"{more}')
     if not isinstance(unit, str):
-        raise InputError(f"unit = {excerpt(unit)} is no unit", where, f"one of {', '.join(units)}, in quotes")
+        raise InputError(f"unit = {excerpt(unit)} is not a unit", where, f"one of {', '.join(units)}, in quotes")
     if unit not in units and _by_pint(of, unit) is None:
         others = [f'"{name}"' for name, quantity in QUANTITIES.items() if name != of and unit in quantity.units]
         belongs = f"quantity = {' or '.join(others)} has it; " if others else ""

@@ -134,7 +134,7 @@ SHEETS = {
     **{
         f"an event of {value}": (
             more(STAND, f"[events.fan_on]\nat_s = [0, 100]\nvalue = [0, {value}]\n"),
-            [STAND, "events.fan_on", "no state"],
+            [STAND, "events.fan_on", "not a state"],
         )
         for value in ('"maybe"', "[1]", "{ x = 1 }", "nan", "inf", "1e308", "9" * 400, "2020-01-01", "true")
     },
@@ -146,7 +146,7 @@ SHEETS = {
             ("no column", "time_s,x\n0,off\n", "'fan_on' is not in the file"),
             ("a slip", "time_s,fan_on\n0,offf\n", "'offf'"),
             ("a word for a time", "time_s,fan_on\nnow,off\n", "line 2"),
-            ("no end", "time_s,fan_on\n0,inf\n", "no state"),
+            ("no end", "time_s,fan_on\n0,inf\n", "not a state"),
             ("a time left out", "time_s,fan_on\n0,off\n,on\n", "rises"),
             ("nothing", "", "is empty"),
             ("a time before", "time_s,fan_on\n-5,off\n0,on\n", "at the start"),
@@ -192,13 +192,13 @@ MODELS = {
     "an effect twice": (model(STEP.replace("[]", '["convection@flange", "convection@flange"]')), ["twice"]),
     "an effect that is not there": (model(STEP.replace("[]", '["warp@yoke"]')), ["unknown effect 'warp'"]),
     "an effect at a place that is not there": (model(STEP.replace("[]", '["convection@mars"]')), ["'mars'"]),
-    "an interval turned over": (model(f'{STEP}intervals = {{ "link.yoke-air" = [2.0, 1.0] }}\n'), ["no interval"]),
+    "an interval turned over": (model(f'{STEP}intervals = {{ "link.yoke-air" = [2.0, 1.0] }}\n'), ["not an interval"]),
     "an interval of no value": (model(f'{STEP}intervals = {{ "link.yoke-air" = [1.0, 2.0] }}\n'), ["has no value"]),
     "half a merge": (model(f"<<<<<<< HEAD\n{STEP}=======\n"), ["not readable as TOML"]),
     "no number": (model(STEP.replace("number = 1", "number = 1.5")), ["number = 1.5"]),
     "a number left out": (model(STEP + STEP.replace("number = 1", "number = 3")), ["not numbered"]),
     "answers in words": (model(f'{STEP}answers = {{ x = "yes" }}\n'), ["x = 'yes'", "true or false"]),
-    "a folder": (lambda case: (case / "model.toml").mkdir(), ["is no file"]),
+    "a folder": (lambda case: (case / "model.toml").mkdir(), ["is not a file"]),
     "a link to nowhere": (lambda case: (case / "model.toml").symlink_to("/nowhere/model.toml"), ["no such file"]),
 }
 REFUSED = {
@@ -243,7 +243,7 @@ def test_accepted_with_a_note(tmp_path, change, note):
 
 
 def test_what_else_lies_in_a_case_does_not_matter(tmp_path):
-    """A name that is no text, a pipe, a link to the folder itself, a film of 2 GB (with holes)."""
+    """A name that is not text, a pipe, a link to the folder itself, a film of 2 GB (with holes)."""
     case = case_of(tmp_path)
     with open(os.fsencode(case) + b"/\xff\xfe.txt", "wb"):
         pass

@@ -1,4 +1,4 @@
-"""Recordings in every format: what is no recording is refused in one line, what is one is read as its CSV is."""
+"""Recordings in every format: what is not a recording is refused in one line, what is one is read as its CSV is."""
 
 import gzip
 import os
@@ -105,7 +105,10 @@ NO_NUMBERS = {
 }
 ENDLESS = {"beyond a double": "1e400", "infinite": "inf", "minus infinite": "-Infinity"}
 REFUSED = {
-    **{f"a cell: {k}": (cell(10, "T_flange", v), ["line 12", "T_flange", "no number"]) for k, v in NO_NUMBERS.items()},
+    **{
+        f"a cell: {k}": (cell(10, "T_flange", v), ["line 12", "T_flange", "not a number"])
+        for k, v in NO_NUMBERS.items()
+    },
     **{f"a cell: {k}": (cell(10, "T_flange", v), ["line 12", "T_flange", "infinite"]) for k, v in ENDLESS.items()},
     **{f"a time: {k}": (cell(10, "time_s", v), ["line 12", "time_s", "test new"]) for k, v in NO_NUMBERS.items()},
     **{f"a current: {k}": (cell(10, "current", v), ["line 12", "current"]) for k, v in NO_NUMBERS.items()},
@@ -137,7 +140,7 @@ REFUSED = {
     "an empty workbook": (excel(lambda t: t.iloc[:0]), ["0 rows"]),
     "a workbook with an error": (excel(lambda t: t.assign(T_flange=["#BUSY!", *t.T_flange[1:]])), ["line 2", "#BUSY!"]),
     "a Parquet cut off": (other("parquet", b"PAR1" + bytes(90)), ["stand.parquet", "really Parquet"]),
-    "lists in a Parquet": (parquet(lambda t: t.assign(T_flange=[[1, 2]] * len(t))), ["T_flange", "no number"]),
+    "lists in a Parquet": (parquet(lambda t: t.assign(T_flange=[[1, 2]] * len(t))), ["T_flange", "not a number"]),
     "true and false as a current": (parquet(lambda t: t.assign(current=True)), ["current", "true and false"]),
     "true and false as a temperature": (parquet(lambda t: t.assign(T_flange=True)), ["T_flange", "true and false"]),
     "instants as a temperature": (parquet(lambda t: t.assign(T_flange=instants(t).time_s)), ["T_flange", "instants"]),

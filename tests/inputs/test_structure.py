@@ -105,7 +105,7 @@ def accepted_or_refused(read, document, way, file=""):
 
 
 def through_file(read, file):
-    """Read what a document looks like as a file; what TOML cannot write is no case."""
+    """Read what a document looks like as a file; what TOML cannot write is not a case."""
 
     def written(document):
         try:

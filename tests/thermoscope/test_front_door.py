@@ -71,7 +71,7 @@ def test_a_hidden_room_is_one_message(root, tmp_path, form):
 
 
 def test_a_folder_of_data_hides_nothing(root, tmp_path):
-    """A folder without __init__.py is no package: Python goes on looking."""
+    """A folder without __init__.py is not a package: Python goes on looking."""
     (tmp_path / "fem").mkdir()
     code = f"import sys; sys.path.insert(1, {str(root)!r}); import thermoscope as ts; print(ts.InputError.__module__)"
     done = subprocess.run([sys.executable, "-c", code], cwd=tmp_path, capture_output=True, text=True)

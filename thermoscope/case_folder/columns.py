@@ -58,8 +58,8 @@ def ours(file: Path) -> None:
     if not file.exists():
         return
     if not file.is_file():
-        raise InputError("is no file", str(file), "another name for it")
+        raise InputError("is not a file", str(file), "another name for it")
     with file.open(encoding="utf-8", errors="replace", newline="") as lines:
         header = next(csv.reader(lines), [])
     if header[:1] != [TIME] or not all(event(name) for name in header[1:]):
-        raise InputError("is there already and is no column of an event: it stays", str(file), "another name for it")
+        raise InputError("is there already and is not a column of an event: it stays", str(file), "another name for it")

@@ -27,7 +27,7 @@ from thermoscope.case_folder.recording_checks import (
 RATES = 10.0  # times the rows of another test
 STORED = 20.0  # times the heat that came in; capacities are known within a factor of 2 or 3
 SWAPPED = 0.25  # of the rise of the others, as far as wires that are swapped make a reading fall at least
-SCALED_C = 60.0  # warmer at rest is no room and no machine in it
+SCALED_C = 60.0  # warmer at rest is neither a room nor a machine in it
 NEAR_F = 18.0  # degF between the sensors of such a machine
 WIDE_K = 10.0  # 1-sigma that no sensor of a machine has
 SOME = np.array([1.0, 1e3, 1e6])  # of every input: small, usual, large
@@ -149,7 +149,7 @@ def _frozen(p: Patient, network: Network) -> Iterator[Finding]:
 
 
 def _noted(p: Patient, network: Network) -> Iterator[Finding]:
-    """Doubts of the reader that are no gaps, and of sensors that stand still for a part of the test."""
+    """Doubts of the reader that are not gaps, and of sensors that stand still for a part of the test."""
     still = {f.where for f in _frozen(p, network)}
     doubts = standing_still(_within(p, network), p.samples)
     for note in [*p.samples.notes, *(doubt for name, doubt in doubts.items() if name not in still)]:

@@ -247,7 +247,7 @@ def _pairs(table: Table) -> dict[str, Pair]:
     for name in table.data:
         pair = table.numbers(name, of="intervals")
         if len(pair) != 2 or pair[0] > pair[1]:
-            raise table.error(f"{name} = {list(pair)} is no interval", "[low, high]")
+            raise table.error(f"{name} = {list(pair)} is not an interval", "[low, high]")
         out[name] = (pair[0], pair[1])
     return out
 

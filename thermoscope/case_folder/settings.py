@@ -150,7 +150,7 @@ def _kinds(table: Table) -> tuple[str, ...] | None:
     for glob in table.members("catalogue"):
         matched = [kind for kind in kinds() if fnmatchcase(kind, glob)]
         if not matched:
-            raise table.error(f"catalogue: '{glob}' is no kind of effect", suggestion(glob, kinds()))
+            raise table.error(f"catalogue: '{glob}' is not a kind of effect", suggestion(glob, kinds()))
         matches |= dict.fromkeys(matched)
     return tuple(matches)
 

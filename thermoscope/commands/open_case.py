@@ -50,7 +50,7 @@ def open_case_for_writing(name: str, progress: Progress, package: Path = PACKAGE
         notes([f"copied the shipped case '{name}' to ./{copy}; from now on that folder is used"])
         path = copy
     if (out := path / "out").exists() and not out.is_dir():
-        raise InputError("is no folder", str(out), "a folder for results: move the file away")
+        raise InputError("is not a folder", str(out), "a folder for results: move the file away")
     folder = load_case(path, progress)
     notes([*folder.notes, *in_short(folder, name)])
     return folder

@@ -23,7 +23,7 @@ def read_pairs(
         except ValueError:
             value = nan
         if not name or not low < value < high:
-            raise InputError(f"'{one}' is no {what}", option, right)
+            raise InputError(f"'{one}' is not {'an' if what[0] in 'aeiou' else 'a'} {what}", option, right)
         out[name] = value
     return out
 

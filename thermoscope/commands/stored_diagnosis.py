@@ -25,7 +25,7 @@ def fingerprint(case: Path, but: str = "") -> str:
     digest = hashlib.sha256()
     for path in sorted(p for p in case.rglob("*") if p.is_file() and "out" not in p.relative_to(case).parts):
         if path.name == but or path.name.startswith(".") or path.stat().st_size > BYTES.most:
-            continue  # a hidden file is what a killed process left; what is larger is no input
+            continue  # a hidden file is what a killed process left; what is larger is not an input
         with path.open("rb") as file:
             content = hashlib.file_digest(file, "sha256").digest()
         digest.update(os.fsencode(path.relative_to(case)) + b"\0" + content)

@@ -249,8 +249,8 @@ def _of_every_test(case: Case, values: Mapping[str, float] | None, error_of: Cal
 def physical(case: Case, values: Mapping[str, float] | None = None) -> dict[str, float]:
     """Values, the model's own if none are given, without the nuisances of its measurements: bias, slope, lag, start.
 
-    Where a state began that no sensor sees is no reading's, but the machine's. In a test that was not fitted it began
-    as it did in those that were, on average.
+    Where a state began that no sensor sees is not a reading's, but the machine's. In a test that was not fitted it
+    began as it did in those that were, on average.
     """
     of, began = case.model.values if values is None else values, dict[str, float]()
     for test in case.tests:

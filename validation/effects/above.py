@@ -57,7 +57,7 @@ class Above(ReadingEffect):
         """Loss or link, input, level."""
         match = PLACE.fullmatch(self.place)
         if match is None or float(match[3]) <= 0.0:
-            raise InputError(f"'{self.place}' is no law above a level", f"effect '{self.name}'", "LOSS|INPUT>LEVEL")
+            raise InputError(f"'{self.place}' is not a law above a level", f"effect '{self.name}'", "LOSS|INPUT>LEVEL")
         return match[1], match[2], float(match[3])
 
     @property

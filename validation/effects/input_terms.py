@@ -118,7 +118,7 @@ class InputTerm(ReadingEffect):
 
     @abstractmethod
     def law_words(self, a: float, network: Network, values: Mapping[str, float], ci95: Interval) -> str:
-        """ "stator to coolant: 56 W/K at rest, 112 at speed_rpm 4000 [100, 125]", and what is no straight line."""
+        """ "stator to coolant: 56 W/K at rest, 112 at speed_rpm 4000 [100, 125]", and what is not a straight line."""
 
     def words(self, a: float, network: Network, values: Mapping[str, float], ci95: Interval = NOTHING) -> str:
         """The same, of something missing."""

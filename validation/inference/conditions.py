@@ -88,7 +88,7 @@ def _catalogue(scene: Scene, names: Sequence[str]) -> list[Effect]:
 
 
 def check_names(case: Case, names: Iterable[str], where: str) -> None:
-    """Refuse what is no kind, no "kind@place" that can be here, and not SENSORS, with the nearest that are."""
+    """Refuse what is neither a kind, nor a "kind@place" that can be here, nor SENSORS, with the nearest that are."""
     scene, words = scene_of(case), (*kinds(), KIND, SENSORS)
     effects = {e.name: e.kind for e in (*catalogue(scene), *single_test_effects(scene), *_catalogue(scene, LOOSENED))}
     for text in names:

@@ -374,7 +374,7 @@ def leftover_noise(evidence: Evidence, members: Sequence[int]) -> Noise:
 
 
 def sharpened(evidence: Evidence, also: Sequence[int] = (), rounds: int = 2) -> Evidence:
-    """The evidence under the noise that is left beside the leading cause: what is missing is no noise.
+    """The evidence under the noise that is left beside the leading cause: what is missing is not noise.
 
     also : causes that may lead, most probable first, although they seem small beside the noise of nothing
     """

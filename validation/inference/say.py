@@ -383,7 +383,7 @@ def _remainder(
     doubt, model_K = "", 0.0
     if fit.error is not None:
         parts, k = fit.error.of(s) * measure.doubts(fit.parts), fit.error.model_columns
-        left = s.r - parts[:, k:].sum(axis=1)  # when inputs stepped is no fault of the model
+        left = s.r - parts[:, k:].sum(axis=1)  # when inputs stepped is not a fault of the model
         model_K = rms(left) - rms(left - parts[:, :k].sum(axis=1))
         doubt = fit.error.names[int(np.argmax(np.mean(parts[:, :k] ** 2, axis=0)))]
     effect, p, less = second_effect(posterior, lead, s)

@@ -27,7 +27,7 @@ LARGER = 10.0  # times the largest size that the catalogue looks for: a film of 
 LARGE_NUISANCE = 2.0  # deviations: one nuisance in twenty goes so far by chance
 NAMES = 2  # in a sentence
 POWER_AT = re.compile(r"[-+.\de]+ at ")
-POSSIBLE = 20.0  # deviations: what a thermometer is off by beyond them is no reading, but another place
+POSSIBLE = 20.0  # deviations: what a thermometer is off by beyond them is not a reading, but another place
 UNEVEN = 4.0  # deviations between the largest and the least of some ten that are equal
 KINDS = {"capacity": "heat capacity of", "h": "film of", "loss": "loss of", "k": "conduction of"}
 KINDS |= {"contact": "contact", "link": "link"}
@@ -205,8 +205,8 @@ def at_level(network: Network, names: Collection[str], reference: Reference) -> 
     """The network with the priors and bounds of effects for the size that they have at a reference.
 
     Declared for a loss's own reference (1000 rpm, 100 A), they would be a hundred times too narrow on a motor of 10 A.
-    Those of an input's offset are shares of its level. What is no power, such as a temperature coefficient, has a prior
-    that nothing changes.
+    Those of an input's offset are shares of its level. What is not a power, such as a temperature coefficient, has a
+    prior that nothing changes.
     """
     laws: dict[str, Law] = {x.name: x.law for x in network.links}
     laws |= {s.name: s.law for s in network.sources}

@@ -440,8 +440,8 @@ def judge(
 ) -> tuple[bool, str]:
     """Accept what converges and passes its checks; a fit that nothing was left out of has to lower its tests' error.
 
-    That error weighs all sensors alike and the fit does not, so it may rise by GETS_WORSE. It is no check of an effect,
-    which has to predict what was left out. Held-out tests have no say; what became of them is told after.
+    That error weighs all sensors alike and the fit does not, so it may rise by GETS_WORSE. It is not a check of an
+    effect, which has to predict what was left out. Held-out tests have no say; what became of them is told after.
     fitted : names of the tests it was fitted to
     """
     in_fit = [c for c in changes if c.name in fitted]

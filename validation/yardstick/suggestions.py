@@ -53,7 +53,7 @@ class Suggestion:
 def suggested_effects(terms: Sequence[Term], case: Case) -> tuple[Suggestion, ...]:
     """Of the terms that a free network needs those that the model as it stands lacks, what carries most heat first.
 
-    Effects sit where the case's network has places for them, as `add` wants it: a link that was added is no place of
+    Effects sit where the case's network has places for them, as `add` wants it: a link that was added is not a place of
     its own.
     """
     network = standing(case)

@@ -24,7 +24,7 @@ def live_document(
     if th.PACKAGE in path.resolve().parents:
         raise InputError("comes along, and is not written to", str(path), "a copy of its folder")
     if th.file_stem(test) != test:
-        raise InputError(f"'{test}' is no name of a file", "--test", f"a name like {th.file_stem(test)}")
+        raise InputError(f"'{test}' is not a name of a file", "--test", f"a name like {th.file_stem(test)}")
     with th.progress() as tell:
         tell("reading the case")
         network = th.load_case(path, untested=True).case.model.network

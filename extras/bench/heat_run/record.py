@@ -114,7 +114,7 @@ def _operation(head: th.TomlTable) -> Operation:
     rated, cycle, load = (head.number(key, low=1e-3) if key in head else 0.0 for key in keys)
     loads = head.rows("loads", of="load") if "loads" in head else []
     if any(len(row) != 2 or row[0] <= 0 or row[1] < 0 for row in loads) or (loads and not any(b for _, b in loads)):
-        raise head.error("loads is no list of pairs", "loads = [[minutes, load], ...]")
+        raise head.error("loads is not a list of pairs", "loads = [[minutes, load], ...]")
     by_load = BY_LOAD, loads and load, "loads and test_load"
     for duties, value, key in ((("S2",), rated, "rated_min"), (CYCLIC, cycle, "cycle_min"), by_load):
         if name in duties and not value:

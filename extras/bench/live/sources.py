@@ -23,7 +23,7 @@ from extras.bench.live.store import BenchError, Row
 from thermoscope import InputError, plugin as th
 
 POLL_S = 0.2  # between two looks at a file that grows
-BYTES = 2**20  # of a line: more is no row
+BYTES = 2**20  # of a line: more is not a row
 TOPIC = "thermoscope"  # TOPIC/rows comes, TOPIC/set goes
 Line = str | Exception
 
@@ -176,4 +176,6 @@ class Parser:
         try:
             return {str(n): math.nan if v is None else float(v) for n, v in json.loads(text).items()}
         except (ValueError, TypeError, AttributeError):
-            raise BenchError("is no row", f"{self.where} line {self.count}", '{"time_s": 5, "T_core": 21.4}') from None
+            raise BenchError(
+                "is not a row", f"{self.where} line {self.count}", '{"time_s": 5, "T_core": 21.4}'
+            ) from None

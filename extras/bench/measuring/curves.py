@@ -13,7 +13,7 @@ from extras.bench.measuring.warming import Equilibrium, Warming, equilibrium, fi
 from thermoscope import InputError, plugin as th
 
 R = TypeVar("R")
-STEADY = 0.02  # a load that strays further from its mean (rms) is no constant load
+STEADY = 0.02  # a load that strays further from its mean (rms) is not a constant load
 ALIKE = 0.02  # tests whose mean loads differ by less are repeats of one test
 LATE = 0.75  # share of a test after which its readings count as its end
 

@@ -77,7 +77,7 @@ def timed_pairs(source: th.TomlTable, beside: Path, unit_s: float) -> Pairs:
     if "readings" in source:
         rows = source.rows("readings", of="value")
         if any(len(row) != 2 for row in rows):
-            raise source.error("readings is no list of pairs", "readings = [[time, value], ...]")
+            raise source.error("readings is not a list of pairs", "readings = [[time, value], ...]")
     elif "file" in source:
         path, time, column = beside.parent / source.word("file"), source.word("time", "time_s"), source.word("column")
         file = th.recording(path)

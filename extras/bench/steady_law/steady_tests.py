@@ -99,7 +99,7 @@ def read_tests(file: Path, columns: Columns, scales: Scales | None = None) -> St
         for n, v in enumerate(values):
             if v is None or not np.isfinite(v):
                 where = f"{file} column '{name}' line {n + table.line}"
-                raise InputError(f"'{table[name][n]}' is no number", where, "a number in every test")
+                raise InputError(f"'{table[name][n]}' is not a number", where, "a number in every test")
         return np.array(values, float)
 
     heat, coolant = column(columns.heat), column(columns.coolant)

@@ -23,7 +23,9 @@ def check_form(form: str, version: int, sensors: Sequence[str], further: Mapping
     further : forms of other extras
     """
     if form not in (*WORKBOOKS, *MODELS, *further):
-        raise InputError(f"'{form}' is no form to export", "--as", th.suggestion(form, (*WORKBOOKS, *MODELS, *further)))
+        raise InputError(
+            f"'{form}' is not a form to export", "--as", th.suggestion(form, (*WORKBOOKS, *MODELS, *further))
+        )
     if version not in VERSIONS:
         raise InputError(f"FMI {version} is not written", "--fmi", "2 or 3")
     if sensors and form not in further:

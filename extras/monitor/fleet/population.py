@@ -22,7 +22,7 @@ from thermoscope import plugin as th
 
 FREEDOM = 4.0  # of Student's t: a motor at four deviations counts half
 ROUNDS, TOLERANCE = 300, 1e-4  # of the iteration: it ends far sooner or turns in a circle; a tenth of NARROW
-NARROW = 1e-3  # smallest spread (of the logarithm): a per mille is no difference
+NARROW = 1e-3  # smallest spread (of the logarithm): a per mille is not a difference
 OUTLIER = 0.01  # probability that a fleet without one has a motor that far off: over all motors and parameters
 DIFFERS = 0.01  # probability of as much spread where all motors are equal
 LOWEST, FIRST = 1e-8, 0.1  # variance of nothing, and where the search begins (10 %)

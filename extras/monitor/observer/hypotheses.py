@@ -6,8 +6,8 @@ over the variance, the log evidence for an amplitude of prior variance v, agains
 
     e(v) = a^2 / (V + 1 / v) / 2 - log(1 + v V) / 2
 
-A sensor that only has the bias it may have, of variance v0, is no fault: its evidence is e(v0 + v) - e(v0). The sums
-forget, so that what was long ago is no evidence now. Odds and temper are those of the diagnosis.
+A sensor that only has the bias it may have, of variance v0, is not a fault: its evidence is e(v0 + v) - e(v0). The sums
+forget, so that what was long ago is not evidence now. Odds and temper are those of the diagnosis.
 """
 
 from __future__ import annotations

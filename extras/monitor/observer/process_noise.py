@@ -44,7 +44,7 @@ def of_doubt(of: th.ParameterPosterior, tests: Sequence[th.Test], bodies: Sequen
 def _in_test(of: th.ParameterPosterior, test: th.Test, bodies: Sequence[str]) -> th.Array:
     network, free, size = th.acting(of, test)
     look = _Flows(network, of.values, test, bodies)
-    beside = ("boundary", "initial")  # which `moved_boundaries` has, and what is no heat
+    beside = ("boundary", "initial")  # which `moved_boundaries` has, and what is not heat
     columns = {p.name: look.by(p) * s for p, s in zip(free, size, strict=True) if th.head(p) not in beside}
     responses = {name: look.driven(other) for name, other in th.moved_inputs(network, test, of.doubt)}
     responses |= {name: look.beside(other) for name, other in th.moved_boundaries(test, of.doubt)}

@@ -68,7 +68,9 @@ def read_bounds(words: Sequence[str]) -> dict[str, tuple[float, float] | None]:
             except ValueError:
                 low, high = 1.0, 0.0
             if not (name and np.isfinite([low, high]).all() and low < high):
-                raise InputError(f"'{one}' is no range", "--vary", "NAME=LOW:HIGH, as geometry.jacket.height_mm=8:20")
+                raise InputError(
+                    f"'{one}' is not a range", "--vary", "NAME=LOW:HIGH, as geometry.jacket.height_mm=8:20"
+                )
             out[name] = low, high
     return out
 

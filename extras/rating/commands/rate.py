@@ -50,7 +50,7 @@ def read_start(word: str) -> float | None:
         return None
     load = th.as_number(word)
     if load is None or not 0.0 <= load <= LARGEST_START:
-        raise InputError(f"'{word}' is no start", "--start", f"cold, or a load from 0 to {LARGEST_START:g}, e.g. 120")
+        raise InputError(f"'{word}' is not a start", "--start", f"cold, or a load from 0 to {LARGEST_START:g}, as 120")
     return load
 
 

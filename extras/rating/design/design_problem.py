@@ -93,9 +93,11 @@ def checked_request(settings: th.Settings, request: DesignRequest) -> None:
     sheets = [th.load_sheet(entry.sheet) for entry in settings.tests]
     inputs = {*th.rated_inputs(file.machine), *(name for sheet in sheets for name in _inputs_of(sheet))}
     _check_names(
-        request.at or {}, {*inputs, *th.boundaries(file.machine)}, "--at", "is no input or boundary of the model"
+        request.at or {}, {*inputs, *th.boundaries(file.machine)}, "--at", "is not an input or boundary of the model"
     )
-    _check_names(request.limits, temperatures_of(file.machine, sheets), "--limit", "is no temperature of the machine")
+    _check_names(
+        request.limits, temperatures_of(file.machine, sheets), "--limit", "is not a temperature of the machine"
+    )
     vary = request.vary or {}
     for name in filter(file.knows, vary):
         file.variable(name, vary[name])

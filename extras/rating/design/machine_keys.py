@@ -91,7 +91,7 @@ class MachineFile:
         """Between bounds (of the key's unit), or around its value as usual."""
         usual = self.value(key)
         if usual == 0.0 or not self.knows(key):
-            raise InputError(f"'{key}' is no number of {self.where}", "--vary", th.suggestion(key, self._keys()))
+            raise InputError(f"'{key}' is not a number of {self.where}", "--vary", th.suggestion(key, self._keys()))
         low, high = bounds or tuple(share * usual for share in USUAL.get(key, (0.5, 2.0)))
         p = self.parameters.get(key)
         if p is not None and bounds is None:

@@ -329,7 +329,7 @@ def test_rows_come_as_cells_and_as_objects():
     assert parser.row('{"time_s": 2, "T": 21}') == {"time_s": 2.0, "T": 21.0}
     with pytest.raises(BenchError, match="3 cells"):
         parser.row("1,2,3")
-    with pytest.raises(BenchError, match="is no row"):
+    with pytest.raises(BenchError, match="is not a row"):
         parser.row("{")
 
 

@@ -178,7 +178,7 @@ def test_signature_is_that_of_numbers_and_names(report):
         (text_of(more='duty = "S2"'), "the duty S2 has no rated_min"),
         (text_of(more='duty = "S4"'), "the duty S4 has no cycle_min"),
         (text_of(more='duty = "S9"'), "the duty S9 has no loads"),
-        (text_of(more='duty = "S10"\nloads = [[1, 1, 1]]\ntest_load = 1.0'), "loads is no list of pairs"),
+        (text_of(more='duty = "S10"\nloads = [[1, 1, 1]]\ntest_load = 1.0'), "loads is not a list of pairs"),
         (text_of(more='case = "tclab"'), "case and [cold], [load] or [hot] are both given"),
         (text_of(tail="[limit]\nK = 180\n"), "key 'source' is missing"),
         (text_of(tail="[power_30min]\nreadings = [[0, 50], [600, 50]]\n"), "10.0 min of power"),

@@ -180,8 +180,8 @@ def test_what_makes_no_sense_is_refused(words, csv_file, tmp_path, thermoscope):
 @pytest.mark.parametrize(
     ("line", "words"),
     [
-        ("2,0,40,x,60,60,60", "'x' is no number"),
-        ("2,0,40,,60,60,60", "is no number"),
+        ("2,0,40,x,60,60,60", "'x' is not a number"),
+        ("2,0,40,,60,60,60", "is not a number"),
         ("2,-5,40,900,60,60,60", "'speed' is negative or 0"),
         ("2,0,40,0,60,60,60", "'P' is negative or 0"),
     ],

@@ -185,8 +185,8 @@ def test_equal_models_give_equal_files(three):
 @pytest.mark.parametrize(
     ("arguments", "message"),
     [
-        (("--as", "hdf"), "'hdf' is no form to export"),
-        (("--as", "c", "--limit", "winding"), "'winding' is no limit; PLACE=DEGC"),
+        (("--as", "hdf"), "'hdf' is not a form to export"),
+        (("--as", "c", "--limit", "winding"), "'winding' is not a limit; PLACE=DEGC"),
         (("--as", "c", "--limit", "coil=155"), "no temperature 'coil' to limit"),
         (("--as", "fmu", "--fmi", "1"), "FMI 1 is not written; 2 or 3"),
     ],

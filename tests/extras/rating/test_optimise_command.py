@@ -77,8 +77,8 @@ def test_a_search_that_is_stopped_gives_the_best_so_far(thermoscope, tmp_path, m
             "no design of 48 meets all limits: the nearest one exceeds 'winding <= 30 degC' by",
         ),
         (("--limit", "winding=155", "--vary", "fins"), "'fins' is nothing that a design could change"),
-        (("--limit", "winding=155", "--vary", "current_A=9:2"), "'current_A=9:2' is no range"),
-        (("--limit", "winding=155", "--vary", "current_A", "--method", "ga"), "'ga' is no method"),
+        (("--limit", "winding=155", "--vary", "current_A=9:2"), "'current_A=9:2' is not a range"),
+        (("--limit", "winding=155", "--vary", "current_A", "--method", "ga"), "'ga' is not a method"),
         (("--limit", "winding=155", "--vary", "current_A", "--torque", "5"), "nothing says what current"),
         pytest.param(
             ("--limit", "winding=155", "--vary", "current_A", "--cluster", "tcp://127.0.0.1:1"),
@@ -157,7 +157,7 @@ def test_what_is_condensed_anew_can_be_built(name):
 
 def test_bounds_are_read():
     assert read_bounds(["a=1:2", "b"]) == {"a": (1.0, 2.0), "b": None}
-    with pytest.raises(InputError, match="is no range"):
+    with pytest.raises(InputError, match="is not a range"):
         read_bounds(["a=1"])
 
 
@@ -180,8 +180,8 @@ def test_a_robust_design_is_judged_by_the_upper_end_of_its_band(tmp_path):
 @pytest.mark.parametrize(
     ("arguments", "words"),
     [
-        (("--limit", "windng=155"), "'windng' is no temperature of the machine"),
-        (("--limit", "winding=155", "--at", "speed=1"), "'speed' is no input or boundary"),
+        (("--limit", "windng=155"), "'windng' is not a temperature of the machine"),
+        (("--limit", "winding=155", "--at", "speed=1"), "'speed' is not an input or boundary"),
         (("--limit", "winding=155", "--vary", "geometry.jacket.heigt_mm=8:20"), "is nothing that a design could"),
         (("--limit", "winding=155", "--cycle", "none"), "no such cycle"),
     ],

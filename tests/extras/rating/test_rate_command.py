@@ -64,7 +64,7 @@ def test_s2_begins_where_it_is_told(thermoscope, tmp_path):
     assert "at rest under current_A = 400 'winding' is" in hot.err
     word = thermoscope(*common, "--start", "warm")
     assert word.code == 2
-    assert "'warm' is no start" in word.err
+    assert "'warm' is not a start" in word.err
 
 
 def test_the_continuous_rating_is_the_rest_of_the_network(thermoscope, tmp_path):
@@ -195,7 +195,7 @@ def test_a_cycle_and_a_map(thermoscope, tmp_path):
 
 
 def test_a_cycle_of_a_cage_machine_multiplies_both_currents(thermoscope, tmp_path):
-    """An S3 of torque; the cage's current is no input of the model itself, and its loss goes with the square too."""
+    """An S3 of torque; the cage's current is not an input of the model itself, and its loss goes with its square."""
     case = small_case(tmp_path)
     network = case / "network.toml"
     network.write_text(network.read_text() + '\n[losses.cage]\nkind = "constant"\nat = "winding"\nP_W = 1\n')

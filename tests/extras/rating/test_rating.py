@@ -159,7 +159,7 @@ def test_a_model_that_no_heat_leaves_is_refused_as_such():
         ({"current_A": 5.0}, "nothing says how warm 'air' is"),
         ({"air": 20.0}, "nothing says what 'current_A' is"),
         ({"current_A": 0.0, "air": 20.0}, "the load is zero"),
-        ({"amps": 1.0}, "'amps' is no input or boundary"),
+        ({"amps": 1.0}, "'amps' is not an input or boundary"),
     ],
 )
 def test_what_is_not_known_is_asked_for(given, message):
@@ -218,7 +218,7 @@ def test_maps_that_cannot_be(columns, message):
 
 def test_a_loss_that_the_network_lacks():
     columns = {**grid(), "iron_W": np.zeros(6)}
-    with pytest.raises(InputError, match="'iron_W' is no loss of the network; known: copper"):
+    with pytest.raises(InputError, match="'iron_W' is not a loss of the network; known: copper"):
         with_losses(body(), loss_grid(columns, "map.csv"), "map.csv")
 
 

@@ -278,7 +278,7 @@ def test_what_is_no_recording_is_said_by_its_name(page, served, name):
     drop(page, [name, case_file.read_text() if case_file.is_file() else "\0\1" * 99])
     page.wait_for_selector("#error")
     assert page.inner_text("#error").startswith(f"{name}: ")
-    assert "it is no record" in page.inner_text("#error")
+    assert "it is not a record" in page.inner_text("#error")
     assert page.locator("#sensors .sensor").count() == 3, "the page goes on"
 
 

@@ -105,7 +105,7 @@ TEXTS = {
     **{f"m.mot, {kind}": ("m.mot", content) for kind, content in MOTOR_CAD.items()},
     "m.step, nothing": ("m.step", ""),
     "m.step, bytes": ("m.step", b"\xff\0" * 5000),
-    "a name that is no text": (os.fsdecode(b"\xff\xfe.toml"), ""),
+    "a name that is not text": (os.fsdecode(b"\xff\xfe.toml"), ""),
 }
 
 

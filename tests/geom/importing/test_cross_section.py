@@ -61,8 +61,8 @@ FAULTS = {
     "outside": ({"magnets": magnets(50, 70)}, "from the axis"),
     "unknown": ({"coil": []}, "unknown shapes 'coil'"),
     "no copies": ({"bars": [{"copies": 0, "loops_mm": []}]}, "copies = 0"),
-    "no shape": ({"bars": [{"copies": 3, "loops_mm": [[[1, 2]]]}]}, "is no shape"),
-    "no point": ({"bars": [{"copies": 3, "loops_mm": [[[1, "x"], [2, 3]]]}]}, "is no point"),
+    "no shape": ({"bars": [{"copies": 3, "loops_mm": [[[1, 2]]]}]}, "is not a shape"),
+    "no point": ({"bars": [{"copies": 3, "loops_mm": [[[1, "x"], [2, 3]]]}]}, "is not a point"),
     "no table": ({"bars": [3]}, "not a list of tables"),
 }
 

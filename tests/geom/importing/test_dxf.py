@@ -243,7 +243,7 @@ def wide_winding():
 WRONG = {
     "no length": (whole, {"stack_mm": None}, "how long the stack is; --stack-mm"),
     "no units": (lambda: whole(insunits=0), {}, r"does not say its units.*--units, one of: mm"),
-    "a foreign unit": (lambda: whole(insunits=0), {"units": "furlong"}, "'furlong' is no unit"),
+    "a foreign unit": (lambda: whole(insunits=0), {"units": "furlong"}, "'furlong' is not a unit"),
     "layers of other names": (
         lambda: whole(names={"stator": "A1"}),
         {},
@@ -253,7 +253,7 @@ WRONG = {
     "an open outline": (open_slot, {}, r"layer stator: an outline is open at x = 60, y = -?3 mm"),
     "a part of a turn": (odd_sector, {}, "spans 57.296 degrees"),
     "a winding beyond the slot": (wide_winding, {}, "windings take .* % of the slots"),
-    "another template": (whole, {"family_template": "barrel"}, "no template"),
+    "another template": (whole, {"family_template": "barrel"}, "not a template"),
 }
 
 

@@ -29,7 +29,7 @@ def test_nothing_is_written_of_what_cannot_be_built(tmp_path):
     out = tmp_path / "out"
     with pytest.raises(InputError, match="cuts its neighbour"):
         import_(saved(tmp_path, pyleecan(stator__slot__W2=0.6)), out)
-    with pytest.raises(InputError, match="no template"):
+    with pytest.raises(InputError, match="not a template"):
         import_(saved(tmp_path, pyleecan()), out, "barrel")
     with pytest.raises(InputError, match="one of: "):
         import_(saved(tmp_path, "x", "machine.dwg"), out)

@@ -195,7 +195,7 @@ def test_guesses_are_assumed_and_options_are_taken(tmp_path):
 
 
 def test_the_rated_point_has_what_the_map_reads(tmp_path):
-    """A torque stands in the machine's file, rated or assumed; where no loss reads it, it is no input."""
+    """A torque stands in the machine's file, rated or assumed; where no loss reads it, it is not an input."""
     assert "torque_Nm" not in rated_inputs(load_machine(MACHINE))
     imported(lab(tmp_path), tmp_path)
     assert rated_inputs(load_machine(tmp_path / f"out/{MACHINE}-lab.toml"))["torque_Nm"] == 280.0
@@ -256,7 +256,7 @@ WRONG = {
     "points in no rows": (scattered, {}, "9 points have 9 values of the first axis"),
     "a negative loss": (negative, {"units": "power=W"}, "a loss is -275 W"),
     "no loss": (no_loss, {}, "no column is of a loss"),
-    "a foreign unit": (long, {"units": "speed=furlong"}, "'speed=furlong' is no unit of a loss map"),
+    "a foreign unit": (long, {"units": "speed=furlong"}, "'speed=furlong' is not a unit of a loss map"),
     "axes that may stand either way": (square, {}, "Speed may stand down or along 12 x 12 points"),
     "MATLAB 7.3": (new_matlab, {}, "MATLAB file of version 7.3"),
     "a damaged file": (damaged, {}, "not readable as a MATLAB file"),

@@ -244,13 +244,13 @@ def test_north_and_south_poles_with_holes_of_their_own(tmp_path):
 
 
 FAULTS = {
-    "another program": ({"__class__": "Simu1"}, "is no machine"),
+    "another program": ({"__class__": "Simu1"}, "is not a machine"),
     "outer rotor": ({"stator__is_internal": True}, "the stator is inside"),
     "unknown rotor": ({"rotor____class__": "LamSlotMulti"}, "LamSlotMulti' is not read"),
     "unknown stator": ({"stator____class__": "LamSlotMultiWind"}, "LamSlotMultiWind' is not read"),
     "unknown slot": ({"stator__slot____class__": "os.system"}, "is not known"),
     "no number": ({"stator__slot__H2": "deep"}, "lacks 'H2'"),
-    "infinite": ({"stator__Rext": 1e400}, "Infinity is no number"),
+    "infinite": ({"stator__Rext": 1e400}, "Infinity is not a number"),
     "slots cut": ({"stator__slot__W2": 0.6}, "cuts its neighbour"),
     "too deep": ({"stator__slot__H2": 0.05}, "mm from the axis"),
     "no shape": ({"rotor__hole__0": {"__class__": "HoleM53", "Zh": 4, "magnet_0": {}}}, "lacks 'H1'"),

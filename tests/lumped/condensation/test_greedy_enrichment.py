@@ -136,7 +136,7 @@ def test_a_changed_coefficient_costs_no_solve(mesh, field, tmp_path, monkeypatch
     contacts = {key: link.law.value for link in network.links for key in CONTACTS if link.name == f"contact:{key}"}
     assert contacts == change.get("contacts", CONTACTS)
     assert all(again.films[face] == h for face, h in change.get("changed", {}).items())
-    with pytest.raises(TypeError):  # the counter is no factor
+    with pytest.raises(TypeError):  # the counter is not a factor
         again.solved([again.nominal_point()])
     assert solves
 

@@ -136,5 +136,5 @@ def test_an_unknown_role_is_one_message_that_lists_the_known(root, table, key, v
 
 def test_a_boundary_that_is_none_cannot_have_a_role(root):
     data = document(root, "tefc") | {"boundaries": {"sea": {"role": "coolant"}}}
-    with pytest.raises(InputError, match="'sea' is no boundary"):
+    with pytest.raises(InputError, match="'sea' is not a boundary"):
         read_network(data)

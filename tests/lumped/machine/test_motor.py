@@ -121,7 +121,7 @@ def test_unknown_loss_is_refused_with_a_suggestion():
 
 @pytest.mark.parametrize("entry", [{"gap_mm": 0.0}, {"gap": 0.1}, 5.0])
 def test_a_contact_needs_a_positive_gap_or_coefficient(entry):
-    with pytest.raises(InputError, match=r"is no contact.*gap_mm"):
+    with pytest.raises(InputError, match=r"is not a contact.*gap_mm"):
         contact_coefficients({"a|b": entry}, ["a|b"], "motor [contacts]")
 
 

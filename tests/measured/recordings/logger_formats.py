@@ -53,7 +53,7 @@ class Format:
     """A text format.  columns : letter of each column's signal;  names : header, "" for the usual names
 
     stamp : row -> cell of the clock;  scale : letter -> (factor, offset) from the unit of memory into that of the file
-    cells : letter -> row -> cell of a column that is no number;  doubt : words that must be said
+    cells : letter -> row -> cell of a column that is not a number;  doubt : words that must be said
     without : letters that are left out though they have a meaning;  switches : columns that are on and off
     """
 

@@ -90,7 +90,7 @@ def test_a_label_before_the_unit_of_every_signal():
 
 
 def test_a_sign_of_degrees_makes_the_letter_behind_it_a_unit(tmp_path):
-    """Whatever quantity the channel's own number looks like: M01 is no torque."""
+    """Whatever quantity the channel's own number looks like: M01 is not a torque."""
     names = ["M01.0 Wicklung °C", "M02.0 Gehäuse °C"]
     source = read_source(read(tmp_path, **dict.fromkeys(names, 20 + T)))
     assert [source.units[name] for name in names] == ["degC", "degC"]
@@ -167,7 +167,7 @@ def test_sheets_with_the_same_columns_are_tests_and_others_are_named(tmp_path):
 
 @pytest.mark.parametrize("clock", [float, lambda s: datetime(2026, 3, 28, 23, 58) + timedelta(seconds=s)])
 def test_a_sheet_for_each_signal_is_one_test(tmp_path, clock):
-    """Each at its own times, of its own length and begun at its own instant; a summary is no signal."""
+    """Each at its own times, of its own length and begun at its own instant; a summary is not a signal."""
     book, truth = openpyxl.Workbook(), {}
     book.active.append(["Summary", "of all"])
     for sheet, unit, begin, step, rows in (

@@ -95,7 +95,7 @@ def test_a_case_finds_the_header_where_a_new_one_does(tmp_path, before, units):
     assert table.columns == list(read_source(tmp_path / "a.csv").cells) == ["time", "T_coil", "I"]
     assert np.array_equal(table["I"], [1.0, np.nan, 3.0, 4.0, 5.0], equal_nan=True)
     line = (before + units).count("\n") + 4
-    with pytest.raises(InputError, match=f"line {line}: 'x' is no number"):
+    with pytest.raises(InputError, match=f"line {line}: 'x' is not a number"):
         numbers(table, "T_coil", tmp_path / "a.csv")
 
 
@@ -104,7 +104,7 @@ def test_no_row_under_a_header_is_taken_for_part_of_it(tmp_path):
     (tmp_path / "a.csv").write_text("time,T,x,y,z\nstart,OVER,OVER,OVER,OVER\n" + "1,2,3,4,5\n" * 5)
     table = read_csv(tmp_path / "a.csv")
     assert (table.columns, table.rows) == (["time", "T", "x", "y", "z"], 6)
-    with pytest.raises(InputError, match="line 2: 'OVER' is no number"):
+    with pytest.raises(InputError, match="line 2: 'OVER' is not a number"):
         numbers(table, "T", tmp_path / "a.csv")
 
 
@@ -119,7 +119,7 @@ def test_a_row_cut_off_in_a_later_block_is_named_by_its_line(tmp_path):
 @pytest.mark.parametrize("cell", ["٣", "1_0", "0x1F", "1d3", "+", "on"])
 def test_what_is_no_number(tmp_path, cell):
     (tmp_path / "a.csv").write_text(f"a,b\n1,.5\n2,NULL\n3,{cell}\n", encoding="utf-8")
-    with pytest.raises(InputError, match=f"line 4: '{re.escape(cell)}' is no number"):
+    with pytest.raises(InputError, match=f"line 4: '{re.escape(cell)}' is not a number"):
         numbers(read_csv(tmp_path / "a.csv"), "b", tmp_path / "a.csv")
 
 

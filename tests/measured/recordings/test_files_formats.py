@@ -264,7 +264,7 @@ def test_workbook_holds_input_and_results(tmp_path):
 
 
 def test_a_chart_sheet_holds_no_table(tmp_path):
-    """The first sheet that has cells is read; a chart by its name is no worksheet."""
+    """The first sheet that has cells is read; a chart by its name is not a worksheet."""
     book = openpyxl.Workbook()
     for row in (["time_s", "T"], [0, 20.0], [1, 21.0], [2, 22.0]):
         book.active.append(row)

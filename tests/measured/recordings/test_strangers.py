@@ -134,7 +134,7 @@ def test_a_machine_judged_by_its_bearing_alone_is_said_by_every_comparison(tmp_p
 
 
 def test_the_table_of_guesses_keeps_its_doubts_whole_at_80_columns(tmp_path, capsys, monkeypatch):
-    monkeypatch.chdir(tmp_path)  # a long folder is no part of the table
+    monkeypatch.chdir(tmp_path)  # a long folder is not part of the table
     written(
         Path(),
         table(
@@ -725,7 +725,7 @@ def test_one_bad_reading_costs_one_reading_whatever_the_span_of_its_column(tmp_p
 def test_a_temperature_that_cannot_be_stands_in_the_first_line(tmp_path, capsys):
     text = table("t [s],Tmotor [°C],T_case [°C],I [A]", S["t"], np.where(S["t"] == 50, -400.0, S["W"]), S["H"], S["I"])
     written(tmp_path, text)
-    assert capsys.readouterr().out.startswith("'Tmotor [°C]' is left out: -400 is no temperature")
+    assert capsys.readouterr().out.startswith("'Tmotor [°C]' is left out: -400 is not a temperature")
 
 
 @pytest.mark.parametrize(

@@ -93,7 +93,7 @@ def test_cell_that_is_no_number(case):
     cells = lines[11].split(",")
     lines[11] = ",".join([*cells[:4], "n.a.?", *cells[5:]])
     path.write_text("\n".join(lines) + "\n")
-    refused(case, "road.csv column 'T_winding' line 12", "'n.a.?' is no number")
+    refused(case, "road.csv column 'T_winding' line 12", "'n.a.?' is not a number")
 
 
 @pytest.mark.parametrize(

@@ -133,8 +133,8 @@ def test_what_does_not_narrow_a_doubt_is_refused(opened_lid, name, size, says):
 @pytest.mark.parametrize(
     ("word", "about", "says"),
     [
-        ("perhaps", "road", "is no answer"),
-        ("yes", "noon", "is no test, event or fault"),
+        ("perhaps", "road", "is not an answer"),
+        ("yes", "noon", "is not a test, event or fault"),
         ("yes", "road:0-9000s", "outside the record"),
     ],
 )

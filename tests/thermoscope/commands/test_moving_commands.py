@@ -20,7 +20,7 @@ def test_a_case_without_geometry_is_refused(case, tmp_path, run, name):
 
 @pytest.mark.parametrize(("run", "name"), [(viewer, "v.png"), (film, "f.avi")])
 def test_a_name_that_fits_no_format_is_refused(run, name):
-    with pytest.raises(InputError, match="is no name"):
+    with pytest.raises(InputError, match="is not a name"):
         run("road-test", Path(name), None)
 
 

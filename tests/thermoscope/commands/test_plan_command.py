@@ -88,7 +88,7 @@ def test_what_it_cannot_plan_is_one_message(case, tmp_path, effects, test, words
 
 
 def test_a_file_that_is_no_page_is_refused(case, tmp_path):
-    with pytest.raises(InputError, match="is no name"):
+    with pytest.raises(InputError, match="is not a name"):
         plan(str(case), RIVALS, None, tmp_path / "p.png", None)
 
 

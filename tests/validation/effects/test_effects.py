@@ -180,7 +180,7 @@ def heat_record(network, test, values):
 
 def way(one, net):
     """+1 where an effect can only heat the machine, -1 where it can only cool it, 0 where it may do either: where its
-    amplitude has either sign, or what it acts on is between two parts, or is no heat."""
+    amplitude has either sign, or what it acts on is between two parts, or is not heat."""
     bigger, p = grown(one, net)
     names = [name for name, _ in p.targets]
     acted = [x for x in (*bigger.links, *bigger.sources) if x.name in names]

@@ -155,7 +155,7 @@ def left_off(taken, error=4.0):
 
 
 def test_no_record_is_forgiven_more_than_all_doubts_of_a_sound_machine_come_to():
-    """Doubts that together take a twentieth of the machine's largest rise off one record are no doubts."""
+    """Doubts that together take a twentieth of the machine's largest rise off one record are not doubts."""
     case = bench(())
     limit = case.doubt["total"] * machine_rise(case.usable)
     assert doubts_check(case, [left_off(3.0), left_off(1.01 * limit, 1.1 * limit)]).contradicts

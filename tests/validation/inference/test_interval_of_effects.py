@@ -48,7 +48,7 @@ def test_films_and_losses_follow_correlations_and_conduction_does_not(kind, empi
         ("copper.feedback", 0.0077, 0.0010, True),
         ("copper.feedback", 0.0077, 0.0040, False),  # copper's 0.0039 is within it
         ("copper.feedback", 0.0039, 0.0001, False),
-        ("convection", 400.0, 1.0, False),  # a film is no property of a material
+        ("convection", 400.0, 1.0, False),  # a film is not a property of a material
     ],
 )
 def test_a_size_that_no_material_has_is_told(kind, value, half, told):

@@ -41,7 +41,7 @@ def answer(
     if size is not None:
         return narrow_doubt(case, word, size, target)
     if word.lower() not in WORDS:
-        raise InputError(f"'{word}' is no answer", "thermoscope explain answer", "yes or no")
+        raise InputError(f"'{word}' is not an answer", "thermoscope explain answer", "yes or no")
     with progress() as tell:
         folder = open_case_for_writing(case, tell)
     yes, subject = WORDS[word.lower()], checked_subject(folder, about or open_question(folder))
@@ -72,12 +72,12 @@ def narrow_doubt(case: str, name: str, size: str, target: str | None) -> int:
     if not usual:
         names = sorted({b for t in tests for b in t.boundaries} | {c.name for t in tests for c in t.channels})
         raise InputError(
-            f"'{name}' is no boundary and no sensor", "thermoscope explain answer", suggestion(name, names)
+            f"'{name}' is neither a boundary nor a sensor", "thermoscope explain answer", suggestion(name, names)
         )
     (subject, widest), where = next(iter(usual.items())), f"thermoscope explain answer {name} '{size}'"
     match = re.fullmatch(r"\s*([0-9.]+(?:e-?[0-9]+)?)\s*K?\s*", number)
     if not match:
-        raise InputError(f"'{number.strip()}' is no temperature difference", where, "for example 0.3 K")
+        raise InputError(f"'{number.strip()}' is not a temperature difference", where, "for example 0.3 K")
     sd = float(match[1])
     if not 0.0 < sd <= widest:
         right = f"above 0 and up to {widest:g} K, which is usual; [doubt] and sigma_K in the files widen"
@@ -114,5 +114,7 @@ def checked_subject(folder: Folder, about: str) -> str:
                 raise InputError(f"unknown test '{test}'", f"--about {about}", f"known: {', '.join(tests)}")
             checked(window, test, float(tests[test].time[0]), float(tests[test].time[-1]), f"--about {about}")
     elif about not in tests and not _fault(about, tests) and not any(about in t.inputs for t in tests.values()):
-        raise InputError(f"'{about}' is no test, event or fault", "--about", f"one of {', '.join(tests)}, or as asked")
+        raise InputError(
+            f"'{about}' is not a test, event or fault", "--about", f"one of {', '.join(tests)}, or as asked"
+        )
     return about

@@ -48,7 +48,7 @@ def calibrate(
         names = working(folder.case)[1].names
         for glob in profile or ():
             if not any(fnmatchcase(name, glob) for name in names):
-                raise InputError(f"'{glob}' is no free parameter", "--profile", suggestion(glob, names))
+                raise InputError(f"'{glob}' is not a free parameter", "--profile", suggestion(glob, names))
         search = Search(many, first_seed, unfinished.values(tell), unfinished.keep)
         try:
             result = fitted(folder.case, progress=tell, profiled=tuple(profile or ()), search=search)

@@ -43,7 +43,7 @@ def losses_draft(file: Path, machine_file: Path, units: str, copper_degC: float 
     """What was taken and assumed, and the text of the machine's file with the losses of the map.
 
     units : "speed=rad/s,power=kW", where the file has none;  copper_degC : of the winding in the map, None: not said
-    Raises InputError where a file is no map, or no machine file with tables of losses.
+    Raises InputError where a file is not a map, or no machine file with tables of losses.
     """
     machine = load_machine_file(machine_file)
     ratings = machine.sections.get("ratings", {})
@@ -146,7 +146,7 @@ def _spliced(draft: Draft, machine: Machine, file: Path, kinds: set[str]) -> str
     path = file if file.is_file() else library()[file.name.removesuffix(".toml")]
     if path.suffix.lower() != ".toml":
         raise InputError(
-            "is no machine file", str(file), "a .toml file: `model import` makes one of other programs' files"
+            "is not a machine file", str(file), "a .toml file: `model import` makes one of other programs' files"
         )
     text = path.read_text(encoding="utf-8")
     tables, losses = tomllib.loads(text).get("losses", {}), machine.sections.get("losses", {})

@@ -204,7 +204,7 @@ def revision_summary(document: Mapping[str, Any], folder: Folder, called: str) -
 
 
 def _outcome_words(document: Mapping[str, Any]) -> list[str]:
-    """What was found and what it leaves; of a step that was refused, or that is no finding, what became of it first."""
+    """What was found and what it leaves; of a step that was refused, or is not a finding, what became of it first."""
     if document["accepted"] and document["found"]:
         return [document["found"], document["strained"]]
     action, effect = document["action"], document["effect"]

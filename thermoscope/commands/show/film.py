@@ -35,7 +35,7 @@ def film(
 ) -> int:
     """The machine warming up in its most telling test, before and after the model's last step."""
     if out is not None and (out.suffix not in SUFFIXES or out.is_dir()):
-        raise InputError("is no name of a film", f"--out {out}", "a file NAME.gif or NAME.mp4")
+        raise InputError("is not a name of a film", f"--out {out}", "a file NAME.gif or NAME.mp4")
     needs_geometry(case)
     required(("pyvista", "PIL", *(("imageio_ffmpeg",) if out is not None and out.suffix == ".mp4" else ())))
     with progress() as tell:

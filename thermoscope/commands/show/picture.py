@@ -59,7 +59,7 @@ def picture(
     if what not in pictures:
         raise InputError(f"unknown picture '{what}'", "show picture", suggestion(what, pictures))
     if out is not None and (out.suffix != ".png" or out.is_dir()):
-        raise InputError("is no name of a picture", f"--out {out}", "a file NAME.png")
+        raise InputError("is not a name of a picture", f"--out {out}", "a file NAME.png")
     with progress() as tell:
         subject = Subject(open_case(case, tell), tell)
         if what in PICTURES and what not in FLAT:

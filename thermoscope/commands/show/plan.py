@@ -39,7 +39,7 @@ def plan(
     from viz.pages.bench_page import BenchPage, write_bench_page
 
     if out is not None and (out.suffix != ".html" or out.is_dir()):
-        raise InputError("is no name of a page", f"--out {out}", "a file NAME.html")
+        raise InputError("is not a name of a page", f"--out {out}", "a file NAME.html")
     with progress() as tell:
         folder = open_case(case, tell)
         models = hypotheses(folder.case, effects or suspected(folder), tell)

@@ -43,7 +43,7 @@ def viewer(
 ) -> int:
     """One HTML file: the machine to turn, cut and play in any browser, without a server or network."""
     if out is not None and (out.suffix != ".html" or out.is_dir()):
-        raise InputError("is no name of a page", f"--out {out}", "a file NAME.html")
+        raise InputError("is not a name of a page", f"--out {out}", "a file NAME.html")
     needs_geometry(case)
     required(("pyvista",))
     with progress() as tell:

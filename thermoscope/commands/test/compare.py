@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     from validation.comparison.compare import Comparison
 
 EVIDENT = 10.0  # nats
-WHITE = 0.01  # probability below which a residual is no noise
+WHITE = 0.01  # probability below which a residual is not noise
 
 
 def compare(

@@ -133,7 +133,9 @@ def places(words: Sequence[str]) -> dict[str, str]:
     for word in words:
         if "=" not in word:
             raise InputError(
-                f"'{word}' is no COLUMN=PLACE", "--place", "such as T_Wickl_U=winding; PLACE may be an input"
+                f"'{word}' is not of the form COLUMN=PLACE",
+                "--place",
+                "such as T_Wickl_U=winding; PLACE may be an input",
             )
     return {column.strip(): place.strip() for column, _, place in (word.rpartition("=") for word in words)}
 

@@ -9,7 +9,7 @@ from validation.effects.base import Effect, Scene, with_parameter
 
 
 def joints(network: Network) -> list[Link]:
-    """Contacts, and hand-declared links between two solids whose conductance follows nothing: a film is no joint."""
+    """Contacts, and hand-declared links between two solids whose conductance follows nothing: a film is not a joint."""
     inner = [link for link in model_links(network) if not set(link.places) & set(network.boundaries)]
     return [link for link in inner if link.kind == "contact" or (link.kind == "link" and _solid(network, link))]
 

@@ -239,7 +239,7 @@ class RotorLoadLoss(AddedLoss):
 
     kind = "loss.rotor.load"
     title = "load-dependent loss in rotor or magnets"
-    sits = "a turning part that is no wound winding"
+    sits = "a turning part that is not a wound winding"
     at = "1000 rpm and 100 A"
     source = "winding harmonics of the armature field, B ~ I; eddy currents in thin conductors, P ~ (f B)^2"
     isolating_test = "same speed at two currents; rotor temperature from back-EMF"

@@ -136,7 +136,7 @@ def test_each_recording_is_read_as_the_test_that_it_fits(thermoscope, root):
 
 
 def test_an_added_effect_counts_in_shares_of_its_size_in_the_model(thermoscope, root, tmp_path):
-    """Its size is fitted as it is, not by a logarithm: e to the 12 W/m2/K is no number of anything."""
+    """Its size is fitted as it is, not by a logarithm: e to the 12 W/m2/K is not a number of anything."""
     case, effect = shutil.copytree(root / "cases" / "tclab", tmp_path / "tclab"), "convection.buoyant@heater1"
     thermoscope("calibrate", case)
     assert thermoscope("add", case, effect).code == 0

@@ -68,7 +68,7 @@ def test_a_pipe_gives_what_the_file_gives(case, rows, document):
 
 BAD = {
     "no column": (HEADER.replace("current", "amps") + "\n0,1,2,3,4,5,6\n", "column 'current' is not in the header"),
-    "a word": (f"{HEADER}\n0,1,0,20,20,293,20\n1,one,0,20,20,293,20\n", "'one' is no number"),
+    "a word": (f"{HEADER}\n0,1,0,20,20,293,20\n1,one,0,20,20,293,20\n", "'one' is not a number"),
     "time": (f"{HEADER}\n0,1,0,20,20,293,20\n0,1,0,20,20,293,20\n", "time 0 does not come after the one before"),
     "begins": (f"{HEADER}\n0,,0,20,20,293,20\n", "column 'current' begins with no number"),
     "empty": ("", "holds no row"),
