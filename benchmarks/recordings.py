@@ -1,12 +1,12 @@
 """Measured recordings from raw file to last improvement, with no hand on them: error on tests that nobody used.
 
-    python benchmarks/recordings.py [--only hust-13 tclab] [--folder DATA] [--most 4] [--json FILE]
+    python benchmarks/recordings.py [--only hust-13 tclab] [--folder DATA] [--most 6] [--json FILE]
 
 Shipped recordings (`hust-13`: all thirteen temperatures from the raw files, the network guessed from the columns;
 `hust` and `tclab`: with the network that is declared) and those of every folder in --folder, which `test new --yes`
-imports. Of files in a folder a third is kept back, of a single file the last third of its rows. What `explain improve`
-does is done, the best-fitting of a group taken unasked. Nothing looks at what is kept back before the end. The
-yardsticks learn from the same tests. --page FILE puts the table of a JSON file into the docs and the README.
+imports. Of files in a folder a third is kept back, of a single file the last third of its rows. Then `explain
+improve --yes` is done. Nothing looks at what is kept back before the end. The yardsticks learn from the same tests.
+--page FILE puts the table of a JSON file into the docs and the README.
 """
 
 from __future__ import annotations
@@ -31,7 +31,7 @@ from measured.case import Case
 from scripts.published import publish
 from thermoscope.case_folder.folder import find_case, load_case
 from validation.comparison.compare import Comparison, pooled
-from validation.revision.improvement import Improvement, Supervisor, best, improve
+from validation.revision.improvement import MOST, Improvement, Supervisor, improve, singletons
 from validation.yardstick.words import model_error, scoped
 from validation.yardstick.yardstick import KINDS, Yardstick, yardstick
 
@@ -186,7 +186,7 @@ def measured_row(source: Source, most: int, scratch: Path) -> Row:
         folder = imported(source, scratch) if source.files else find_case(source.case)
         case = load_case(folder).case
         yard = yardstick(case)
-        supervisor = Supervisor(best, suggest=True)
+        supervisor = Supervisor(singletons, suggest=True)
         result = improve(case, supervisor, most, lambda message: print(f"  {message}", file=sys.stderr))
     except (ThermoscopeError, RuntimeError) as fault:
         return Row(source.name, fault=str(fault).rpartition(": ")[2], cpu_s=cpu_s() - begin)
@@ -252,7 +252,7 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--only", nargs="*", help="names of recordings")
     parser.add_argument("--folder", type=Path, help="further recordings, a folder each")
-    parser.add_argument("--most", type=int, default=4, help="effects to add at most")
+    parser.add_argument("--most", type=int, default=MOST, help="effects to add at most")
     parser.add_argument("--json", type=Path, help="where the numbers go")
     parser.add_argument("--page", type=Path, help="a JSON file whose table goes into docs and README")
     options = parser.parse_args()

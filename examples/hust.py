@@ -1,12 +1,11 @@
 """Measured traction motor: the starting network, what the tool names, and the error on four profiles never used.
 
-    python examples/hust.py [--rounds 4] [--ablation] [--out out/hust]
+    python examples/hust.py [--most 6] [--ablation] [--out out/hust]
 
-What `thermoscope explain improve` does, the best-fitting of a group taken unasked: the effect that leads is added and
-what case.toml leaves free is calibrated again; where nothing is left to add, what a free network needs, as long as it
-predicts better. Profiles 5, 8, 11 and 15 are only ever
-predicted, and nothing here looks at them before the end. With --ablation every effect that was added is deleted in
-turn, the rest calibrated anew, and the diagnosis asked what is missing. Prints the tables of
+What `thermoscope explain improve --yes` does: the effect that leads is added and what case.toml leaves free is
+calibrated again; where nothing is left to add, what a free network needs, as long as it predicts better. Profiles 5,
+8, 11 and 15 are only ever predicted, and nothing here looks at them before the end. With --ablation every effect that
+was added is deleted in turn, the rest calibrated anew, and the diagnosis asked what is missing. Prints the tables of
 cases/hust-ipmsm/README.md and writes them to --out, with that of the front page and the model; scripts/published.py
 puts them there.
 """
@@ -31,7 +30,7 @@ from thermoscope.validation import diagnose
 from thermoscope.validation.comparison.compare import Comparison, pooled
 from thermoscope.validation.parameters.unknowns import with_model
 from thermoscope.validation.revision import revise
-from thermoscope.validation.revision.improvement import Step, Supervisor, best, improve
+from thermoscope.validation.revision.improvement import MOST, Step, Supervisor, improve, singletons
 from thermoscope.validation.revision.revise import TOGETHER
 
 CHANNELS = ("winding", "stator", "rotor")
@@ -178,7 +177,7 @@ def front_page(stairs: Sequence[Step]) -> str:
 
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--rounds", type=int, default=4, help="steps, the calibration among them")
+    parser.add_argument("--most", type=int, default=MOST, help="effects to add at most")
     parser.add_argument("--ablation", action="store_true")
     parser.add_argument("--out", type=Path, default=Path("out/hust"))
     options = parser.parse_args()
@@ -187,7 +186,7 @@ def main() -> None:
         print(message, file=sys.stderr)
 
     case = load_case(find_case("hust-ipmsm"), tell).case
-    done = improve(case, Supervisor(best, suggest=True), options.rounds, progress=tell)
+    done = improve(case, Supervisor(singletons, suggest=True), options.most, progress=tell)
     options.out.mkdir(parents=True, exist_ok=True)
     file = options.out / "model.toml"
     save_history(file, history(done.stairs), load_history(file))

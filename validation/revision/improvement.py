@@ -16,6 +16,7 @@ from validation.comparison.compare import Comparison, errors, pooled
 from validation.diagnosis import diagnose
 from validation.effects import effect
 from validation.effects.during import During
+from validation.effects.sensors.reading_fault import SensorDelay
 from validation.inference.decide import SURE
 from validation.inference.result import Candidate, Diagnosis
 from validation.parameters.unknowns import with_model
@@ -131,8 +132,9 @@ class Supervisor:
 
     offer : of a diagnosis the candidates that may be added now
     choose : of the candidates that cannot be told apart (one or more) the name to add, or None to stop
-    suggest : add what a free network has and the model lacks, where no effect of the diagnosis is left and the model
-        predicts tests that were left out less well than it
+    suggest : nobody is asked: what is not chosen hides nothing after it, and what a free network has and the model
+        lacks is added where no effect of the diagnosis is left and the model predicts tests that were left out less
+        well than it
     keep : told every accepted revision and the evidence for it
     """
 
@@ -143,7 +145,7 @@ class Supervisor:
 
 
 def singletons(diagnosis: Diagnosis, choice: Sequence[Candidate]) -> str | None:
-    """What may be added without asking: physics that stands alone or is sure; of faults those that held in one test.
+    """What may be added without asking: physics that stands alone or is sure; of faults what is of one test.
 
     Halves of the instants may say that more is missing beside it: that is no doubt of what is sure.
     """
@@ -153,9 +155,10 @@ def singletons(diagnosis: Diagnosis, choice: Sequence[Candidate]) -> str | None:
 
 
 def _unasked(name: str) -> bool:
-    """May it be added by what it predicts? What a sensor did in one test may; that it always reads wrong is asked."""
+    """May it be added by what it predicts? What a sensor or clock did in one test may; that it always reads wrong is
+    asked."""
     of = effect(name)
-    return not of.fault or isinstance(of, During)
+    return not of.fault or isinstance(of, (During, SensorDelay))
 
 
 def best(diagnosis: Diagnosis, choice: Sequence[Candidate]) -> str:
@@ -233,8 +236,12 @@ def _added(
             break
         name = supervisor.choose(diagnosis, choice)
         if name is None:
-            declined = f"{' or '.join(c.words for c in choice)} {'were' if len(choice) > 1 else 'was'} not added"
-            break
+            declined = (
+                declined or f"{' or '.join(c.words for c in choice)} {'were' if len(choice) > 1 else 'was'} not added"
+            )
+            if not supervisor.suggest:
+                break
+            continue
         for names in ((name,), needed_together(diagnosis, name)):
             if names and not any(_stands(case, one) for one in names):
                 step = add(case, names, progress)

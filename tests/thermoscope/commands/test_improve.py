@@ -103,6 +103,8 @@ def test_what_cannot_be_told_is_never_offered(found, names):
             answer("data", replace(row("sensor.loose@T_yoke in dusk", "named"), probability=0.99)),
             "sensor.loose@T_yoke in dusk",
         ),
+        (answer("data", replace(row("time.offset@dusk", "named"), probability=0.99)), "time.offset@dusk"),
+        (answer("data", replace(row("sensor.gain@T_yoke", "named"), probability=0.99)), None),
     ],
 )
 def test_what_is_sure_is_added_without_asking_but_no_lasting_fault(found, name):

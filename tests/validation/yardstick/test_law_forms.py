@@ -10,7 +10,7 @@ from test_suggestions import SILENT
 from lumped.transfer.laws import InputPower
 from validation.calibration.calibrate import no_progress
 from validation.effects import effect
-from validation.revision.improvement import Supervisor, best, further_step
+from validation.revision.improvement import Supervisor, further_step, singletons
 from validation.revision.revise import add
 from validation.yardstick.network_terms import follows
 from validation.yardstick.yardstick import free_network_terms
@@ -46,7 +46,7 @@ def test_what_was_added_is_told_as_a_law_with_its_interval():
 
 def test_terms_that_need_each_other_are_added_in_one_step():
     some = case(bench(pumped=0.7), bench("one"))
-    step, evidence = further_step(some, Supervisor(best, suggest=True), SILENT, 9.0, [], no_progress)
+    step, evidence = further_step(some, Supervisor(singletons, suggest=True), SILENT, 9.0, [], no_progress)
     assert step.effect == "loss.input@two|heater2 at 100 + conductance.input@two|ambient|pump at 3000"
     assert step.accepted
     assert "two to ambient" in evidence["free network"]

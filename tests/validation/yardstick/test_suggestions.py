@@ -12,8 +12,9 @@ from thermoscope.case_folder.stored_yardstick import yardstick_document
 from validation.calibration.calibrate import no_progress
 from validation.comparison.compare import errors
 from validation.effects import effect
+from validation.inference.result import Candidate
 from validation.parameters.unknowns import scene_of
-from validation.revision.improvement import Refusal, Step, Supervisor, _added, best, ended, further_step
+from validation.revision.improvement import Refusal, Step, Supervisor, _added, ended, further_step, singletons
 from validation.yardstick.suggestions import suggested_effects
 from validation.yardstick.terms import Term
 from validation.yardstick.yardstick import yardstick
@@ -110,16 +111,16 @@ def test_improve_adds_what_a_free_network_has_where_the_diagnosis_names_nothing(
     """The film that was left out is accepted, with the words of the free network as its evidence."""
     poorer = without(case, ("body", "ambient"))
     refused = []
-    step, evidence = further_step(poorer, Supervisor(best, suggest=True), SILENT, 9.0, refused, no_progress)
+    step, evidence = further_step(poorer, Supervisor(singletons, suggest=True), SILENT, 9.0, refused, no_progress)
     assert step is not None, refused
     assert step.accepted
     assert evidence["free network"].startswith("body to ambient: ")
-    assert further_step(poorer, Supervisor(best), SILENT, 9.0, refused, no_progress) == (None, {})
+    assert further_step(poorer, Supervisor(singletons), SILENT, 9.0, refused, no_progress) == (None, {})
 
 
 def test_nothing_is_suggested_where_the_model_predicts_as_well_as_a_free_network(case):
     refused = []
-    assert further_step(case, Supervisor(best, suggest=True), SILENT, 0.01, refused, no_progress) == (None, {})
+    assert further_step(case, Supervisor(singletons, suggest=True), SILENT, 0.01, refused, no_progress) == (None, {})
     assert not refused
 
 
@@ -152,9 +153,20 @@ def test_where_no_name_was_added_the_likeliest_sets_are_tried_and_the_criterion_
     odds = (SimpleNamespace(effects=(), probability=0.1), sensor, *odds)
     said = SimpleNamespace(groups=groups, odds=odds, verdict="outside")
     refused = []
-    step, evidence = further_step(poorer, Supervisor(best, suggest=True), said, 9.0, refused, no_progress)
+    step, evidence = further_step(poorer, Supervisor(singletons, suggest=True), said, 9.0, refused, no_progress)
     assert (step.effect, step.accepted, evidence["probability"]) == ("convection.constant@body", True, 0.3)
     assert [r.effects for r in refused] == [("mass@core",)]
+
+
+@pytest.mark.parametrize(("suggest", "name"), [(True, "convection.constant@body"), (False, None)])
+def test_a_lasting_fault_that_is_left_hides_nothing_after_it_where_nobody_is_asked(case, suggest, name):
+    """A user who takes nothing of what he is asked has stopped; a rule has only passed over one of two."""
+    poorer = without(case, ("body", "ambient"))
+    names = ("sensor.gain@T_body", "convection.constant@body")
+    rows = tuple(Candidate(n, 9.0, 3.0, 1.0, "1", (0.5, 1.5), "named", probability=0.99) for n in names)
+    said = Said(((names[0],), (names[1],)), (), "several", names, rows, "two are missing")
+    step, _, why = _added(poorer, Supervisor(singletons, suggest=suggest), said, 0.0, [], no_progress)
+    assert (step and step.effect, bool(why)) == (name, name is None)
 
 
 def test_what_did_not_predict_is_not_tried_again(case):
@@ -162,7 +174,7 @@ def test_what_did_not_predict_is_not_tried_again(case):
     odds = (SimpleNamespace(effects=("mass@core",), probability=0.6),)
     said = SimpleNamespace(groups=(), odds=odds, verdict="outside")
     refused = [Refusal(("mass@core",), "more heat capacity", "it was worse")]
-    further_step(poorer, Supervisor(best, suggest=True), said, 9.0, refused, no_progress)
+    further_step(poorer, Supervisor(singletons, suggest=True), said, 9.0, refused, no_progress)
     assert [r.effects for r in refused].count(("mass@core",)) == 1
 
 
@@ -172,7 +184,7 @@ def test_what_was_tried_last_is_a_table_and_one_clause_of_the_sentence(case):
     odds = [SimpleNamespace(effects=(f"{kind}@core",), probability=0.2) for kind in ("mass", "loss.constant")]
     said = SimpleNamespace(groups=(), odds=tuple(odds), verdict="outside")
     refused = []
-    further_step(poorer, Supervisor(best, suggest=True), said, 9.0, refused, no_progress)
+    further_step(poorer, Supervisor(singletons, suggest=True), said, 9.0, refused, no_progress)
     assert [r.what for r in refused] == [effect(o.effects[0]).statement for o in odds][: len(refused)]
     assert all(str(r) == f"not accepted: {r.what}, as {r.why}" for r in refused)
     assert refused
@@ -184,7 +196,7 @@ def test_the_sentence_counts_what_the_table_of_refusals_lists(case, monkeypatch)
     monkeypatch.setattr("validation.revision.improvement.add", lambda *anything: refusal)
     odds = [SimpleNamespace(effects=(f"{kind}@core",), probability=0.2) for kind in ("mass", "loss.constant")]
     said = Said((), odds, "outside", (), (), "nothing explains it")
-    step, _, why = _added(poorer, Supervisor(best, suggest=True), said, 9.0, refused, no_progress)
+    step, _, why = _added(poorer, Supervisor(singletons, suggest=True), said, 9.0, refused, no_progress)
     assert step is None
     assert len({r.what for r in refused}) == len(refused) > 2
     assert why == f"nothing explains it; tried and refused: {len(refused)} other explanations"
