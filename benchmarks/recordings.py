@@ -183,16 +183,21 @@ def measured_row(source: Source, most: int, scratch: Path) -> Row:
     """One recording, from raw file to last step."""
     begin = cpu_s()
     try:
-        folder = imported(source, scratch) if source.files else find_case(source.case)
-        case = load_case(folder).case
+        folder = load_case(imported(source, scratch) if source.files else find_case(source.case))
+        case = folder.case
         yard = yardstick(case)
         supervisor = Supervisor(singletons, suggest=True)
-        result = improve(case, supervisor, most, lambda message: print(f"  {message}", file=sys.stderr))
+        result = improve(case, supervisor, most, tell, folder.settings.kinds)
     except (ThermoscopeError, RuntimeError) as fault:
         return Row(source.name, fault=str(fault).rpartition(": ")[2], cpu_s=cpu_s() - begin)
     if yard is None or not yard.hold_out:
         return Row(source.name, fault="no test kept back reads a sensor that others read", cpu_s=cpu_s() - begin)
     return row(source, case, yard, result, cpu_s() - begin)
+
+
+def tell(message: str) -> None:
+    """Progress, under the recording's name."""
+    print(f"  {message}", file=sys.stderr)
 
 
 def row(source: Source, case: Case, yard: Yardstick, result: Improvement, seconds: float) -> Row:

@@ -60,6 +60,7 @@ class Posterior:
 class Decision:
     """groups : per thing that is missing the causes that may be it, most probable first;  sure : P(something)
 
+    lead : P(a cause of the first group)
     others : what halves of the instants would decide, where that is something else
     checks : what it was held against;  withheld : what is not told, since a half says that nothing is missing
     """
@@ -70,6 +71,7 @@ class Decision:
     others: tuple[Decision, ...] = ()
     checks: tuple[Check, ...] = ()
     withheld: Decision | None = None
+    lead: float = 1.0
 
 
 def decide(evidence: Evidence, hypotheses: Sequence[Weighed]) -> Decision:
@@ -86,14 +88,14 @@ def decide(evidence: Evidence, hypotheses: Sequence[Weighed]) -> Decision:
         groups.append(more)
     share, single = inclusion(hypotheses, len(evidence.effects)), singles_by_member(hypotheses)
     groups.sort(key=lambda g: precedence(share[g[0]], single[g[0]].nats if g[0] in single else -np.inf))
+    lead = sum(p for members, p in every if members.intersection(groups[0]))
     if len(groups) > 1:
         verdict: Verdict = "several"
     elif all(evidence.effects[k].fault for k in groups[0]):
         verdict = "data"
     else:
-        sure = share[groups[0][0]] >= SURE
-        verdict = "named" if len(groups[0]) == 1 and sure else "group"
-    return Decision(verdict, tuple(groups), something)
+        verdict = "named" if len(groups[0]) == 1 and lead >= SURE else "group"
+    return Decision(verdict, tuple(groups), something, lead=lead)
 
 
 def catalogue_explains(hypotheses: Sequence[Weighed]) -> bool:
@@ -225,7 +227,7 @@ def without_twins(e: Evidence, decision: Decision, claimed: Sequence[int]) -> De
     for k in (*claimed, *(k for g in decision.groups for k in g)):
         same[k] = next((j for j in same.values() if is_same_event(e.effects[j], e.effects[k], whole)), k)
     groups = tuple(tuple(dict.fromkeys(same[k] for k in g)) for g in decision.groups)
-    alone = decision.verdict == "group" and len(groups[0]) == 1 < len(decision.groups[0])
+    alone = decision.verdict == "group" and len(groups[0]) == 1 < len(decision.groups[0]) and decision.lead >= SURE
     return replace(decision, groups=groups, verdict="named" if alone else decision.verdict)
 
 

@@ -149,9 +149,9 @@ def singletons(diagnosis: Diagnosis, choice: Sequence[Candidate]) -> str | None:
 
     Halves of the instants may say that more is missing beside it: that is no doubt of what is sure.
     """
-    first = effect(choice[0].effect)
-    sure = choice[0].probability >= SURE or (len(choice) == 1 and diagnosis.verdict in ("named", "several"))
-    return first.name if sure and _unasked(first.name) else None
+    first, odds = effect(choice[0].effect), choice[0].probability
+    alone = len(choice) == 1 and diagnosis.verdict in ("named", "several") and odds > 0.5  # beside unknown heat, too
+    return first.name if (odds >= SURE or alone) and _unasked(first.name) else None
 
 
 def _unasked(name: str) -> bool:

@@ -23,7 +23,9 @@ def verdict(diagnosis: Document | None, comparison: Document | None) -> tuple[st
         if off
         else "The model agrees with the measurements; nothing is found missing.",
         "named": f"Missing from the model: {spoken(names[:1])}.",
-        "group": f"Missing from the model: one of {spoken(names, 'or')}. These tests cannot tell them apart.",
+        "group": f"Missing from the model: one of {spoken(names, 'or')}. These tests cannot tell them apart."
+        if len(names) > 1
+        else f"Perhaps missing from the model: {spoken(names)}. These tests cannot tell.",
         "several": f"Missing from the model: {spoken(names)}.",
         "outside": f"Heat is missing or in excess{_where(diagnosis)}; no known effect explains it.",
         "absorbed": "A calibrated value lies far from what is physically expected; it hides something.",

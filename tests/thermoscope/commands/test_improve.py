@@ -95,7 +95,8 @@ def test_what_cannot_be_told_is_never_offered(found, names):
 @pytest.mark.parametrize(
     ("found", "name"),
     [
-        (answer("named", row("mass@yoke", "named")), "mass@yoke"),
+        (answer("named", replace(row("mass@yoke", "named"), probability=0.7)), "mass@yoke"),
+        (answer("named", replace(row("mass@yoke", "named"), probability=0.3)), None),  # unknown heat is likelier
         (answer("group", row("mass@yoke", "group"), row("iron@yoke", "group")), None),
         (answer("data", row("sensor.bias@T_yoke", "named")), None),
         (answer("several", row("sensor.bias@T_yoke", "named")), None),

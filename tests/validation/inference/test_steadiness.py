@@ -182,6 +182,7 @@ def test_one_event_with_ends_a_sample_apart_is_one_thing():
     assert without_twins(e, Decision("group", ((1, 0),), 1.0), [0]) == Decision("named", ((0,),), 1.0)
     assert without_twins(e, Decision("group", ((0, 2, 3),), 1.0), ()) == Decision("group", ((0, 2, 3),), 1.0)
     assert without_twins(e, Decision("group", ((0,),), 1.0), ()).verdict == "group"
+    assert without_twins(e, Decision("group", ((1, 0),), 1.0, lead=0.3), ()).verdict == "group", "heat is likelier"
 
 
 def test_what_held_nearly_all_of_a_test_is_what_held_in_the_test():

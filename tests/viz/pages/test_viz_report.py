@@ -171,6 +171,14 @@ def test_every_verdict_has_its_words(code, word):
     assert word in verdict({**diagnose, "verdict": code}, compare)[1]
 
 
+def test_one_cause_that_is_not_sure_is_told_as_such():
+    compare, diagnose = documents()
+    one = next({**c, "decision": "group"} for c in diagnose["candidates"] if c["decision"] in ("named", "group"))
+    sentence = verdict({**diagnose, "verdict": "group", "candidates": [one]}, compare)[1]
+    assert sentence.startswith("Perhaps missing from the model: ")
+    assert sentence.endswith(". These tests cannot tell.")
+
+
 def test_a_wrong_base_is_what_the_report_says_first():
     rows = [("none", True, True), ("bench", False, False), ("plate", False, False)]
     bases = [{"test": "b", "base": b, "declared": said, "excluded": out} for b, said, out in rows]
