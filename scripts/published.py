@@ -2,7 +2,8 @@
 
     thermoscope demo --json out/demo.json
     python examples/hust.py --out out/hust
-    python -m scripts.published [--demo out/demo.json] [--hust out/hust]
+    python examples/tclab.py --out out/tclab
+    python -m scripts.published [--demo out/demo.json] [--hust out/hust] [--tclab out/tclab]
 
 The front page and the page of hust-ipmsm take theirs from one run, so they cannot disagree.
 """
@@ -20,6 +21,7 @@ from typing import Any
 
 ROOT = Path(__file__).parents[1]
 FRONT, HUST = ROOT / "README.md", ROOT / "cases" / "hust-ipmsm" / "README.md"
+TCLAB = ROOT / "cases" / "tclab" / "README.md"
 
 
 def between(text: str, marker: str, new: str) -> str:
@@ -79,6 +81,7 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--demo", type=Path, help="what thermoscope demo --json wrote")
     parser.add_argument("--hust", type=Path, help="folder that examples/hust.py wrote to")
+    parser.add_argument("--tclab", type=Path, help="folder that examples/tclab.py wrote to")
     options = parser.parse_args()
     if options.demo:
         demo = json.loads(options.demo.read_text(encoding="utf-8"))
@@ -87,6 +90,8 @@ def main() -> None:
     if options.hust:
         publish(FRONT, "hust-rows", (options.hust / "front-page.md").read_text(encoding="utf-8"))
         publish(HUST, "hust-tables", (options.hust / "table.md").read_text(encoding="utf-8"))
+    if options.tclab:
+        publish(TCLAB, "tclab-tables", (options.tclab / "table.md").read_text(encoding="utf-8"))
 
 
 if __name__ == "__main__":

@@ -130,7 +130,6 @@ class Improvement:
 class Supervisor:
     """Who decides and who remembers.
 
-    offer : of a diagnosis the candidates that may be added now
     choose : of the candidates that cannot be told apart (one or more) the name to add, or None to stop
     suggest : nobody is asked: what is not chosen hides nothing after it, and what a free network has and the model
         lacks is added where no effect of the diagnosis is left and the model predicts tests that were left out less
@@ -140,7 +139,6 @@ class Supervisor:
 
     choose: Callable[[Diagnosis, Sequence[Candidate]], str | None]
     keep: Callable[[Revision, Mapping[str, float | str]], None] = field(default=lambda step, evidence: None)
-    offer: Callable[[Diagnosis], tuple[Candidate, ...]] = field(default=lambda diagnosis: offered(diagnosis))
     suggest: bool = False
 
 
@@ -159,11 +157,6 @@ def _unasked(name: str) -> bool:
     asked."""
     of = effect(name)
     return not of.fault or isinstance(of, (During, SensorDelay))
-
-
-def best(diagnosis: Diagnosis, choice: Sequence[Candidate]) -> str:
-    """Of a group its best-fitting member, which comes first: for studies, where nobody is asked."""
-    return choice[0].effect
 
 
 def improve(
@@ -186,7 +179,7 @@ def improve(
     while True:
         diagnosis = diagnose(case, kinds=kinds, progress=progress)
         progress(shorten(f"step {len(stairs)}: {diagnosis.words}", LINE, placeholder=" ..."))
-        if supervisor.offer(diagnosis) and sum(s.effect is not None for s in stairs) >= most:
+        if offered(diagnosis) and sum(s.effect is not None for s in stairs) >= most:
             return ended(case, stairs, diagnosis, f"{counted(most, 'effect')} at most in one run")
         refused = list[Refusal]()
         step, document, why = _added(case, supervisor, diagnosis, stairs[-1].left_out_K, refused, progress)
@@ -230,7 +223,7 @@ def _added(
     """
     declined = ""
     for i in range(max(len(diagnosis.groups), 1)):
-        choice = supervisor.offer(replace(diagnosis, groups=diagnosis.groups[i:], named=diagnosis.named[i:]))
+        choice = offered(replace(diagnosis, groups=diagnosis.groups[i:], named=diagnosis.named[i:]))
         choice = tuple(c for c in choice if not _stands(case, c.effect))  # larger than it is: nothing to add
         if not choice:
             break
@@ -330,12 +323,6 @@ def needed_together(diagnosis: Diagnosis, name: str) -> tuple[str, ...]:
     """The most probable set of effects that this one is in with others; () where there is none."""
     sets = [o for o in diagnosis.odds if len(o.effects) > 1 and name in o.effects]
     return max(sets, key=lambda o: o.probability).effects if sets else ()
-
-
-def leading(diagnosis: Diagnosis) -> tuple[Candidate, ...]:
-    """The first group's candidates, also where the catalogue does not explain all: for studies, not for users."""
-    first = diagnosis.groups[0] if diagnosis.groups else ()
-    return tuple(c for c in diagnosis.candidates if c.effect in first)
 
 
 def evidence(diagnosis: Diagnosis, candidate: Candidate) -> dict[str, float | str]:
