@@ -20,7 +20,7 @@ from validation.effects.sensors.reading_fault import SensorDelay
 from validation.inference.decide import SURE
 from validation.inference.result import Candidate, Diagnosis
 from validation.parameters.unknowns import with_model
-from validation.revision.revise import Revision, add, calibrate
+from validation.revision.revise import TOGETHER, Revision, add, calibrate
 from validation.yardstick.suggestions import suggested_effects
 from validation.yardstick.words import NAMES, WORTH
 from validation.yardstick.yardstick import yardstick
@@ -237,7 +237,7 @@ def _added(
             continue
         for names in ((name,), needed_together(diagnosis, name)):
             if names and not any(_stands(case, one) for one in names):
-                step = add(case, names, progress)
+                step = _present(case, names, progress)
                 if step.accepted:
                     return step, evidence(diagnosis, next(c for c in choice if c.effect == name)), ""
                 refused.append(Refusal.of(names, step))
@@ -300,7 +300,8 @@ def further_step(
 def _present(case: Case, names: Sequence[str], progress: Progress) -> Revision:
     """Some effects added in one step, without those that are fitted to nothing beside the others."""
     step = add(case, names, progress)
-    left = [name for name, check in zip(names, step.checks, strict=False) if check.passed]
+    each = (step.effect or "").split(TOGETHER)
+    left = [name for name, check in zip(each, step.checks, strict=False) if check.passed]
     return add(case, left, progress) if 0 < len(left) < len(names) else step
 
 

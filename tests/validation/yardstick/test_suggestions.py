@@ -192,7 +192,7 @@ def test_what_was_tried_last_is_a_table_and_one_clause_of_the_sentence(case):
 
 def test_the_sentence_counts_what_the_table_of_refusals_lists(case, monkeypatch):
     poorer, refused = without(case, ("body", "ambient")), list[Refusal]()
-    refusal = SimpleNamespace(accepted=False, checks=(), why="it predicts no better")
+    refusal = SimpleNamespace(accepted=False, effect=None, checks=(), why="it predicts no better")
     monkeypatch.setattr("validation.revision.improvement.add", lambda *anything: refusal)
     odds = [SimpleNamespace(effects=(f"{kind}@core",), probability=0.2) for kind in ("mass", "loss.constant")]
     said = Said((), odds, "outside", (), (), "nothing explains it")
