@@ -11,7 +11,7 @@ from itertools import accumulate
 import numpy as np
 
 from geom.errors import InputError
-from measured.headers.cells import TIMES, is_date, is_reading, is_unit, number, split_unit, unit_of
+from measured.headers.cells import TIMES, WITH_UNIT, is_date, is_reading, is_unit, number, split_unit, unit_of
 from measured.headers.layout import Layout, Row
 from measured.headers.words import READ, SETPOINT, is_time, quantities_of, roles_of, tokens
 
@@ -129,7 +129,7 @@ def _block(rows: Sequence[Row], first: int, width: int) -> list[int]:
         alone = len(cells) == 1 < 0.5 * width <= (len(rows[i]) if block else width) and not cells[0].startswith("***")
         if alone or any(map(is_date, cells)) or (1 < len(cells) < 0.5 * width and all(map(is_time, cells))):
             continue
-        if len(cells) > 2 and len(set(cells[1:])) == 1 and is_reading(cells[1]):
+        if len(cells) > 2 and ((len(set(cells[1:])) == 1 and is_reading(cells[1])) or _valued(cells)):
             continue
         if cells and ((len(cells) < 0.5 * width and not _all_units(rows[i])) or all(map(is_reading, cells))):
             break
@@ -208,12 +208,21 @@ def _first(rows: Sequence[Row], width: int, where: str) -> int:
             after = next((j for j in range(i, len(rows)) if not fits[j]), len(rows))
             names = [c for row in rows[after : after + TALLEST] if not _readings(row) for c in map(str, trimmed(row))]
             settings = max(map(len, map(trimmed, rows[i:after]))) < width and len(set(names)) >= width
-            if (settings and after - i < SHORT * sum(fits)) or (labels[i] and sum(labels) < SHORT * sum(fits)):
+            rates = _valued(rows[i]) and not _valued(rows[i + 1])
+            if rates or (settings and after - i < SHORT * sum(fits)) or (labels[i] and sum(labels) < SHORT * sum(fits)):
                 continue  # also rows of rates or factors behind their labels: "Interval:", 0.5, 0.5
             while i and len(rows[i - 1]) >= len(rows[i]) and _kinds(rows[i - 1], width) == _kinds(rows[i], width):
+                if _valued(rows[i - 1]):
+                    break
                 i -= 1  # a remark behind the readings of a first row
             return i
     raise InputError("fewer than three rows of readings: it is not a record", where, "at least 3 rows of numbers")
+
+
+def _valued(row: Row) -> bool:
+    """Are all of its cells numbers with one unit, as rates of channels are over readings without one?"""
+    units = {match[2] if (match := WITH_UNIT.fullmatch(str(c).strip())) else "" for c in trimmed(row)}
+    return len(units) == 1 and "" not in units
 
 
 def _kinds(row: Row, width: int) -> list[bool]:

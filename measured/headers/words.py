@@ -17,7 +17,8 @@ VOCABULARY = tomllib.loads(Path(__file__).with_name("vocabulary.toml").read_text
 QUANTITY: Mapping[str, frozenset[str]] = {name: words_of(text) for name, text in VOCABULARY["quantities"].items()}
 ROLES = ROLE_WORDS
 WORDS = {name: words_of(text) for name, text in VOCABULARY["words"].items()}
-SETPOINT, READ, MODELLED, INLET, NOTHING = (WORDS[n] for n in ("setpoint", "read", "modelled", "inlet", "nothing"))
+SETPOINT, READ, MODELLED, INLET = (WORDS[n] for n in ("setpoint", "read", "modelled", "inlet"))
+NOTHING, RATIO = WORDS["nothing"], WORDS["ratio"]
 DIFFERENCE, CLOCKS, LOSS, OUTER, CHANNELS = (WORDS[n] for n in ("difference", "clock", "loss", "outer", "channels"))
 EXTREME, SPREAD, MEAN, INSTRUMENT, MACHINE = (WORDS[n] for n in ("extreme", "spread", "mean", "instrument", "machine"))
 SPARE, RUNS, SUPPLY, GOES_IN, COMES_OUT = (WORDS[n] for n in ("spare", "runs", "supply", "goes_in", "comes_out"))
@@ -49,7 +50,8 @@ def tokens(name: str) -> tuple[str, ...]:
         name = phrase.sub(f" {meaning} ", name)
     for word in WORD.findall(name):
         low = word.lower()
-        if len(low) > SHORTEST and low.endswith("s") and not low.endswith("ss"):
+        plural = len(low) > SHORTEST and low.endswith("s") and not low.endswith("ss")
+        if plural and (low not in TERMS or low[:-1] in TERMS):
             low = low[:-1]  # the singular
         joint = len(low) > 2 and low[0] == "t" and low not in PARTS and low[1:] in PARTS
         out += ["t", low[1:]] if joint else [low]
@@ -57,6 +59,7 @@ def tokens(name: str) -> tuple[str, ...]:
 
 
 PARTS = frozenset().union(*ROLES.values())
+TERMS = PARTS.union(*QUANTITY.values(), *WORDS.values())
 
 
 def axis_of(name: str) -> str:

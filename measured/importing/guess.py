@@ -29,6 +29,7 @@ from measured.headers.words import (
     PATH,
     PUMP,
     QUANTITY,
+    RATIO,
     READ,
     ROLES,
     SETPOINT,
@@ -96,6 +97,7 @@ HARDLY = "hardly warms: taken as the room"
 SEVERAL = "of the first of several machines, by their numbers?"
 UNKNOWN = "unknown"  # of a unit
 RELATIVE = "relative to a nominal"
+OF_WHAT = "a share, by its unit alone: of what?"
 BY_READINGS = "a temperature, by its readings alone"
 FACTORS = ("current", "voltage", "torque", "speed")
 PASSES = "a product of other columns: it passes through"
@@ -151,6 +153,7 @@ class Guess:
 def guesses(source: Source, clock: Sequence[str], target: Target) -> list[Guess]:
     """One per column that is not a clock."""
     every = _by_readings(source, [guess(source, c, target) for c in source.cells if c not in clock], target)
+    every = _without_extremes(source, every)
     every = _cold_start_outliers(source, _read(source, _without_functions(source, every), target))
     kelvin = sum(g.unit == "K" for g in every if g.quantity == "temperature")
     axes = {axis for g in every if g.quantity == "current" and (axis := axis_of(source.labels[g.column]))}
@@ -181,6 +184,18 @@ def _read_as(source: Source, g: Guess, starts: Sequence[float], target: Target) 
     if untold or all(len(w) == 1 for w in tokens(label) if w in QUANTITY[g.quantity]):
         return _placed(Guess(g.column, "temperature", "degC", why="readings", doubt=BY_READINGS), label, target)
     return replace(g, doubt=f"or {BY_READINGS}")
+
+
+def _without_extremes(source: Source, every: list[Guess]) -> list[Guess]:
+    """Without the largest and the least beside a reading, of which that would be a function, too."""
+    words = {g.column: {*tokens(source.labels[g.column])} for g in every if g.used}
+    means = [words[c] - MEAN for c in words if not words[c] & EXTREME]
+    return [
+        Guess(g.column, "", doubt=f"{FUNCTION}: of the reading beside it")
+        if g.used and words[g.column] & EXTREME and words[g.column] - EXTREME in means
+        else g
+        for g in every
+    ]
 
 
 def _without_functions(source: Source, every: list[Guess]) -> list[Guess]:
@@ -276,16 +291,8 @@ def _of_one(source: Source, every: list[Guess]) -> list[Guess]:
 
 
 def _read(source: Source, every: list[Guess], target: Target) -> list[Guess]:
-    """Without the temperatures that a model made, that never change, and extremes, where others were read; the air
+    """Without the temperatures that a model made, and that never change, where others were read; the air
     of a cabinet is the room where no other column is and all parts are warmer."""
-    words = {g.column: {*tokens(source.labels[g.column])} for g in every if g.used}
-    means = [words[c] - MEAN for c in words if not words[c] & EXTREME]
-    every = [
-        g.without(f"{FUNCTION}: of the reading beside it")
-        if g.used and words[g.column] & EXTREME and words[g.column] - EXTREME in means
-        else g
-        for g in every
-    ]
     hot = {g.column: source.labels[g.column] for g in every if g.quantity == "temperature"}
     parts = [c for c in hot if not of_edge(roles_of(hot[c]))]
     still = {c for c in parts if np.nanmax(values := source.numbers(c)) == np.nanmin(values)}
@@ -424,8 +431,8 @@ def _left_out(source: Source, column: str) -> str:
         return "a compass heading, beside a place on the map"
     if words & SPREAD:
         return "a spread of readings, not a reading"
-    if words & NOTHING and unit in WEAK:
-        return f"'{sorted(words & NOTHING)[0]}' is nothing a model reads"
+    if (odd := words & (NOTHING | RATIO if unit == "%" else NOTHING)) and unit in WEAK:
+        return f"'{sorted(odd)[0]}' is nothing a model reads"
     identifies = "id" in words and not unit_text and bool((values[np.isfinite(values)] % 1 == 0).all())
     return "a number that names a row" if identifies and _counts_on(source, column) else ""
 
@@ -491,7 +498,8 @@ def _quantity(label: str, unit: str, target: Target) -> tuple[str, str, str]:
         return "share", "unit", f"{RELATIVE} {by_name[0].replace('_', ' ')} that is not given: a share"
     if of_unit:
         unsure = len(of_unit) > 1 and not both
-        return (both or of_unit)[0], SUREST if both else "unit", f"or a {of_unit[1]}" if unsure else ""
+        doubt = f"or a {of_unit[1]}" if unsure else "" if both or unit != "%" else OF_WHAT
+        return (both or of_unit)[0], SUREST if both else "unit", doubt
     if (feeds := target.input_of(label, "")) and (quantity := target.inputs[feeds]) in (by_name or [quantity]):
         return quantity, f"name like the input {feeds}", ""
     if roles_of(label) and by_name in ([], ["temperature"], ["vehicle_speed"]):

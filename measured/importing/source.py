@@ -42,7 +42,9 @@ TENFOLD = re.compile(r"(.*[^\W_])[ _]\(?[x×*](10+)\)?")  # T_wdg_x10: a registe
 LEAST_PATHS = 3  # with groups in common
 BOOKS = (".xlsx", ".xlsm")
 HOURS = re.compile(r"(?:[01]?\d|2[0-4])\s*[hH]\s*[0-5]\d")  # 10h05, by hand in French
-HALVES = re.compile(r"(?:(오전|上午|午前)|오후|下午|午後)\s*(\d[\d:.]*)")  # of a day, before the hour
+HALVES = re.compile(  # of a day, before the hour or behind the time
+    r"(?:(오전|上午|午前)|오후|下午|午後)\s*(\d[\d:.]*)|(?<=\d)\s?(?:([öÖ]{2}|π\.?\s?μ\.?)|[öÖ][sS]|μ\.?\s?μ\.?)$"
+)
 YEAR = re.compile(r"^\s*['’](?=\d\d[-/.]\d\d[-/.]\d\d\b)")
 POINTED = re.compile(r"(?:[01]?\d|2[0-3])\.[0-5]\d\.[0-5]\d")
 TAG = re.compile(r"\s*<[^<>]*>|\\[^\\]*:\d+$")  # of a channel, no part of its name: 101 Winding <TC K>, tStator\ETKC:1
@@ -304,12 +306,15 @@ def _without_groups(labels: Mapping[str, str]) -> dict[str, str]:
 
 
 def _with_colons(cells: Sequence[Any]) -> Sequence[Any]:
-    """Times of day that are written as 10h05, 오후 1:05, or as dates are, 09.14.05: a year that changes from row to row
-    is a second. Years of two digits behind an apostrophe are whole."""
+    """Times of day that are written as 10h05, 오후 1:05, 1:05 ÖS, or as dates are, 09.14.05: a year that changes from
+    row to row is a second. Years of two digits behind an apostrophe are whole."""
     if isinstance(cells, np.ndarray) or not all(isinstance(c, str) for c in cells):
         return cells
     if all(HALVES.search(c) or YEAR.search(c) for c in cells[:9]):
-        return [YEAR.sub("20", HALVES.sub(lambda m: f"{m[2]} {'AM' if m[1] else 'PM'}", c)) for c in cells]
+        return [
+            YEAR.sub("20", HALVES.sub(lambda m: f"{m[2] or ''} {'AM' if m[1] or m[3] else 'PM'}", c.strip()))
+            for c in cells
+        ]
     if all(HOURS.fullmatch(c.strip()) for c in cells):
         return [re.sub(r"\s*[hH]\s*", ":", c.strip()) for c in cells]
     if not all(POINTED.fullmatch(c.strip()) for c in cells[:9]):

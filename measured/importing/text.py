@@ -47,7 +47,8 @@ LOGGED = re.compile(rf"^(\d\S*[ T]\d\d:\S+|\d+:\d\d:\S+)(?=\s)[^=\n]*?((?:\s{PAI
 POINT = re.compile(r"^([^\s=,]+(?:,\S+=\S+)?) ([^\s=,]+=\S+?)[iu]? (\d{10,19})(?=\r?$)", re.MULTILINE)  # a,b=c d=5i 17
 SERIES = (("name", "label", "channel", "signal", "title", "target"), ("unit", "units"))  # of readings, in JSON
 TITLE = re.compile(rf"(?:.*\.)?_*(?:{'|'.join(SERIES[0])})_*")  # metric.__name__
-ARROW = re.compile(r"^(\d{1,2}:\d{2}:\d{2}[.,]\d+) -> ", re.MULTILINE)  # a serial monitor's time before each line
+# A serial monitor's time before each line, or one in brackets.
+ARROW = re.compile(r"^(?:(\d{1,2}:\d{2}:\d{2}[.,]\d+) -> |\[\s*(\d[\d:.,]*)\]:?\s+)", re.MULTILINE)
 FORTRAN = re.compile(r"(?<=[.\d]\d)[Dd](?=[-+]\d\d\b)")  # 2.4D+01
 KEYED = re.compile(r"\s*([^\W\d][^:=,;\t]*?)\s*[:=]\s*(\S.*)")
 BOTH_SIGNS = re.compile(r"(?<![\d.:/-])\d+\.\d+(?![\d.:/-])")  # a number with a point, which is not a date
@@ -91,7 +92,7 @@ def text_table(file: Path) -> tuple[Layout, Columns, list[str], float | None]:
     if FORTRAN.search(start):
         lines = lines.edited(lambda line: FORTRAN.sub("E", line))
     if ARROW.search(start):
-        lines = lines.edited(lambda line: ARROW.sub(lambda match: f"{match[1]}\t", line))
+        lines = lines.edited(_parted)
     if len({point[1] for point in POINT.finditer(start)}) == 1:
         lines = lines.edited(lambda line: re.sub(r"[iu]?,", "\t", POINT.sub(r"\3,\2", line)))
     if len(LOGGED.findall(start)) > 9:
@@ -135,6 +136,12 @@ def text_table(file: Path) -> tuple[Layout, Columns, list[str], float | None]:
         ]
         columns = [whole.get(j, cells) for j, cells in enumerate(columns)]
     return plan, columns, notes, interval_s
+
+
+def _parted(line: str) -> str:
+    """A line with its sign between cells behind the time before it too."""
+    sign = next((s for s in DELIMITERS if s in line), "\t")
+    return ARROW.sub(lambda match: f"{match[1] or match[2]}{sign}", line)
 
 
 def _logged(line: str) -> str:

@@ -118,6 +118,15 @@ def german(k: int) -> str:
     return f"{now.day}. {GERMAN[now.month - 1]} {now.year} {now:%H:%M:%S}"
 
 
+def turkish(now: datetime) -> str:
+    return f"{(now.hour - 1) % 12 + 1:02d}:{now:%M:%S} {'ÖÖ' if now.hour < 12 else 'ÖS'}"
+
+
+def beside(letter: str, sign: str):
+    """The largest or the least of a signal since the row before."""
+    return lambda k: f"{signals(5.0)[letter][k] + float(sign + '0.05'):.2f}"
+
+
 def korean(now: datetime) -> str:
     return f"{now:%Y-%m-%d} {'오전' if now.hour < 12 else '오후'} {(now.hour - 1) % 12 + 1}:{now:%M:%S}"
 
@@ -824,5 +833,47 @@ FORMATS: dict[str, Format] = {
         encoding="cp1250",
         cells={"z": lambda k: "offen" if k // 7 % 2 else "zu"},
         switches=("Bremse",),
+    ),
+    "turkish halves of a day": Format(
+        "xtIWA",
+        ["Tarih", "Saat", "Akım (A)", "Sargı (°C)", "Ortam (°C)"],
+        ";",
+        ",",
+        cells={"x": at("%d.%m.%Y")},
+        stamp=lambda k: turkish(BEGUN + timedelta(seconds=5 * k - 200)),
+        encoding="cp1254",
+    ),
+    "the largest and the least of every channel": Format(
+        "tnWxyAzv",
+        [
+            "Time (s)",
+            "RPM/AVE (rpm)",
+            *(f"{c}/{q} (°C)" for c in ("Winding", "Ambient") for q in ("AVE", "Max", "Min")),
+        ],
+        cells={c: beside(*of) for c, of in {"x": "W+", "y": "W-", "z": "A+", "v": "A-"}.items()},
+    ),
+    "an efficiency, and units of a dynamometer": Format(
+        "tIMnxWA",
+        ["t [s]", "I_eff", "Torque (lbf-ft)", "shaft_speed_radps", "Eff1[%]", "winding_temp_degc", "T room [°C]"],
+        scale={"M": (1 / 1.3558179, 0.0), "n": RADS},
+        digits=4,
+        doubt="no unit: A is assumed",
+    ),
+    "rates of channels under their units": Format(
+        "tIWA",
+        ["Zeit", "Strom", "Wicklung", "Raum"],
+        "\t",
+        ",",
+        units=["s", "A", "°C", "°C\n1 Hz\t1 Hz\t0,2 Hz\t0,2 Hz"],
+    ),
+    "milliseconds in brackets": Format(
+        "tWAI",
+        [],
+        stamp=lambda k: str(5000 * k + 812),
+        row=lambda c: f"[{c[0]}] Tcoil={c[1]}C | Troom={c[2]}C | I={c[3]}A",
+        doubt="ms are assumed",
+    ),
+    "losses in polish": Format(
+        "tPWHA", ["Czas", "moc_strat", "Uzwojenie", "Korpus", "Otoczenie"], ";", ",", doubt="W is"
     ),
 }

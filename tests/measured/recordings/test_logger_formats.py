@@ -26,6 +26,7 @@ RENAMED = {
     "what channels are in a row of remarks",
     "a japanese logger and its table of channels",
     "units in a table of channels",
+    "milliseconds in brackets",
 }
 
 

@@ -15,7 +15,7 @@ from measured.headers.words import roles_of
 from measured.importing.aligned import Recording, shift
 from measured.importing.case_files import read_runs
 from measured.importing.clock import clock_of
-from measured.importing.guess import AS_FLOW, AS_ROOM, ON_OFF, guesses, in_memory
+from measured.importing.guess import AS_FLOW, AS_ROOM, OF_WHAT, ON_OFF, guesses, in_memory
 from measured.importing.source import read_source
 from thermoscope.commands.test.new import Wishes, first_model, new_case as new
 
@@ -264,6 +264,11 @@ def test_the_speed_of_a_fan_is_a_flow_and_none_of_the_machine(tmp_path):
         assert (column["feeds"], column["quantity"]) == (INPUTS.get(place, place), quantity)
 
 
+def test_a_share_by_its_unit_alone_is_doubted(tmp_path):
+    found, _ = read(file(tmp_path, "t [s],Q7 [%],I [A],T_winding [°C],T_room [°C]", "t", 100 * ON, "I", "W", "A"))
+    assert found["Q7 [%]"][0].doubt == OF_WHAT
+
+
 def test_a_cooler_that_is_on_and_off_in_signs_without_blanks(tmp_path):
     on = [str(k // 23 % 2) for k in range(N)]
     found, _ = read(file(tmp_path, "时间(s),电流(A),电机绕组温度,环境温度,冷却风机", "t", "I", "W", "A", on))
@@ -411,6 +416,9 @@ def test_a_labview_file_has_its_units_in_its_second_head_and_no_groups(tmp_path)
         ("T escobillas", Role.COMMUTATOR),
         ("Olie boven", None),  # no oven
         ("teplota okolia", Role.AMBIENT),
+        ("Korpus", Role.HOUSING),
+        ("코일 온도", Role.WINDING),
+        ("실내 온도", Role.AMBIENT),
     ],
 )
 def test_names_of_parts_in_the_words_of_other_shops(name, role):
