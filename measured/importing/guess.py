@@ -445,7 +445,7 @@ def _impossible(source: Source, g: Guess) -> str:
     if not finite.size:
         return CODES_ALONE
     worst = finite[np.argmax(np.maximum(low - finite, finite - high))]
-    return "" if low <= worst <= high else f"{worst:.4g} is no {g.quantity.replace('_', ' ')} {THAT_CAN_BE}"
+    return "" if low <= worst <= high else f"{worst:.4g} is not a {g.quantity.replace('_', ' ')} {THAT_CAN_BE}"
 
 
 def _in_fahrenheit(source: Source, every: list[Guess]) -> list[Guess]:

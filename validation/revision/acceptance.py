@@ -21,12 +21,11 @@ from measured.sensors.blocks import groups
 from validation.calibration.calibrate import ROUGH, CachedSegments, Fit, minimise
 from validation.comparison.linearisation import Segment, segments
 from validation.noise import FOLLOWED, Noise
-from validation.parameters.unknowns import FREE, Unknowns, sorted_unknowns, to_value
+from validation.parameters.unknowns import Unknowns, sorted_unknowns, to_value
 
 NOTHING: Mapping[str, float] = MappingProxyType({})
 GAIN = 1.15  # nats, odds of 3 to 1: less is not worth more than a bare mention (Jeffreys 1961, appendix B)
 SAME = 1.01  # times the error before: what two digits show as no change
-TRACE = 0.01  # of an effect's usual size: what is fitted to less is not there
 VISIBLE = 3.0  # deviations: one of a thousand that are not there is so far off
 FELT = 1e-3  # of the largest trace (rms) in a test: below it a step does not act there
 FEWEST = 3  # readings of a channel that a fit looks at
@@ -252,7 +251,7 @@ def bound_check(fit: Fit, name: str) -> Check:
     k = fit.unknowns.names.index(name)
     p, value = fit.unknowns.parameters[k], to_value(fit.unknowns.parameters[k], float(fit.theta[k]))
     inside = f"{name} {value:.3g} lies between {p.low:.3g} and {p.high:.3g} {p.unit}"
-    if abs(value - p.neutral) <= TRACE * p.prior_sd / FREE:
+    if fit.at_bound[k] and value == p.neutral:
         return Check("bounds", False, value, p.high, f"{name} is fitted to {value:.3g} {p.unit}: it is not there")
     if fit.at_bound[k] and p.targets[0][0].startswith("boundary:"):
         words = f"{name} would have to be more than {value:.3g} {p.unit}: no boundary is read so far off"

@@ -95,7 +95,7 @@ def test_a_channel_cannot_go_where_it_makes_no_sense(dropped, key, to, words):
 def test_what_was_not_recorded_is_asked_for(dropped):
     without = dropped.moved("0:I [A]", "")
     assert without.missing == ["current_A"]
-    with pytest.raises(InputError, match="no number"):
+    with pytest.raises(InputError, match="not a number"):
         without.constant("current_A", "many")
     assert without.constant("current_A", "80,5").document["constants"] == {"current_A": "80.5"}
 

@@ -61,8 +61,8 @@ def test_a_test_is_part_of_a_recording(tmp_path):
         ("at_s = [10, 20]\nvalue = [0, 1]", "not at the start"),
         ("at_s = [0, 20]\nvalue = [0]", "one for each instant"),
         ("at_s = [0, 20, 20]\nvalue = [0, 1, 0]", "do not follow"),
-        ('at_s = [0]\nvalue = ["maybe"]', "no state"),
-        ("at_s = [0]\nvalue = [true]", "no state"),
+        ('at_s = [0]\nvalue = ["maybe"]', "not a state"),
+        ("at_s = [0]\nvalue = [true]", "not a state"),
     ],
 )
 def test_events_that_say_too_little_are_refused(tmp_path, lines, words):

@@ -92,7 +92,7 @@ def test_readings_may_stand_in_the_record(record):
     record.write_text(text)
     assert read_record(record).hot.cooling[1] == (40.0, 0.659)
     record.write_text(text.replace("[[25, 0.66]", "[[25]"))
-    with pytest.raises(InputError, match="no list of pairs"):
+    with pytest.raises(InputError, match="not a list of pairs"):
         read_record(record)
 
 

@@ -270,8 +270,8 @@ def dated(day):
 
 
 BAD = {
-    "no record": ({"a.csv": "Dear colleague,\nplease find attached the report.\nRegards"}, {}, "no record"),
-    "binary": ({"a.png": "\x00\x01\x02"}, {}, "no record"),
+    "no record": ({"a.csv": "Dear colleague,\nplease find attached the report.\nRegards"}, {}, "not a record"),
+    "binary": ({"a.png": "\x00\x01\x02"}, {}, "not a record"),
     "one column": ({"a.csv": "T_winding\n" + "\n".join(str(20 + i) for i in range(30))}, {}, "one column only"),
     "clocks apart": (
         {"a.csv": lines(dated(LATER[0])), "b.csv": lines(dated(LATER[1])).replace("T_winding", "current_A")},

@@ -69,7 +69,7 @@ def test_a_winding_that_was_left_out_stands_in_the_first_line(tmp_path, capsys):
 def test_a_place_without_a_column_is_refused_with_its_neighbour(tmp_path):
     with pytest.raises(InputError, match=r"no column 'T_Wikl_U'.*did you mean 'T_Wickl_U'"):
         written(tmp_path, table("t [s],I [A],T_Wickl_U", S["t"], S["I"], S["W"]), places={"T_Wikl_U": "winding"})
-    with pytest.raises(InputError, match="no COLUMN=PLACE"):
+    with pytest.raises(InputError, match="not of the form COLUMN=PLACE"):
         places(["T_Wickl_U"])
 
 
