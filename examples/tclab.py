@@ -19,6 +19,8 @@ from thermoscope.geom.storage import write_whole
 from thermoscope.validation.revision.improvement import MOST, Improvement, Step, Supervisor, improve, singletons
 from thermoscope.validation.revision.revise import TOGETHER
 
+BAR = "\\|"  # in a cell of Markdown
+
 
 def ladder(tell: Callable[[str], None], most: int = MOST) -> Improvement:
     """All rungs of the case."""
@@ -40,7 +42,7 @@ def row(stair: Step) -> str:
     verdict, alike = (str(stair.evidence.get(key, "")) for key in ("verdict", "confused_with"))
     said = "free network" if "free network" in stair.evidence else verdict
     cells = [name, *(f"{t.rmse_K:.2f}" for t in stair.comparison.tests), size(stair), said, alike]
-    return f"| {' | '.join(cells).replace('heater1|', 'heater1&#124;')} |"
+    return f"| {' | '.join(c.replace('|', BAR) for c in cells)} |"
 
 
 def size(stair: Step) -> str:

@@ -17,7 +17,7 @@ from validation.diagnosis import diagnose
 from validation.effects import effect
 from validation.effects.during import During
 from validation.effects.sensors.reading_fault import SensorDelay
-from validation.inference.decide import SURE
+from validation.inference.decide import SURE, is_same_event
 from validation.inference.result import Candidate, Diagnosis
 from validation.parameters.unknowns import with_model
 from validation.revision.revise import TOGETHER, Revision, add, calibrate
@@ -147,7 +147,8 @@ def singletons(diagnosis: Diagnosis, choice: Sequence[Candidate]) -> str | None:
 
     Halves of the instants may say that more is missing beside it: that is no doubt of what is sure.
     """
-    first, odds = effect(choice[0].effect), choice[0].probability
+    first = effect(choice[0].effect)
+    odds = sum(c.probability for c in diagnosis.candidates if is_same_event(effect(c.effect), first))
     alone = len(choice) == 1 and diagnosis.verdict in ("named", "several") and odds > 0.5  # beside unknown heat, too
     return first.name if (odds >= SURE or alone) and _unasked(first.name) else None
 
@@ -237,7 +238,7 @@ def _added(
             continue
         for names in ((name,), needed_together(diagnosis, name)):
             if names and not any(_stands(case, one) for one in names):
-                step = _present(case, names, progress)
+                step = add(case, names, progress)
                 if step.accepted:
                     return step, evidence(diagnosis, next(c for c in choice if c.effect == name)), ""
                 refused.append(Refusal.of(names, step))

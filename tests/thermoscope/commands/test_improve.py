@@ -112,6 +112,16 @@ def test_what_is_sure_is_added_without_asking_but_no_lasting_fault(found, name):
     assert singletons(found, offered(found)) == name
 
 
+def test_one_event_with_ends_a_little_apart_is_as_sure_as_both_together():
+    lid, late = (
+        replace(row(f"convection.constant@yoke in b:{span}s", "named"), probability=0.4)
+        for span in ("100-300", "120-300")
+    )
+    found = replace(answer("named", lid), candidates=(lid, late))
+    assert singletons(found, offered(found)) == lid.effect
+    assert singletons(answer("named", lid), (lid,)) is None
+
+
 @pytest.mark.parametrize(("word", "name"), [("2\n", "iron@yoke"), ("\n", None), ("", None), ("3\n", None)])
 def test_asking_takes_a_number_of_the_list(word, name, monkeypatch, capsys):
     found = answer("group", row("mass@yoke", "group"), row("iron@yoke", "group"))
