@@ -230,8 +230,7 @@ def explanations(
     rows = tangent_worth(evidence, bases, s.event.name, 1.0, values)
     like = max(rows, key=lambda c: c.worth).effect.base if rows else bases[0]  # type: ignore[attr-defined]
     occurrence = timed_event(evidence, like, s.event, far, values)
-    few = predicted_repeats(evidence, like, occurrence.event, values)
-    occurrence = occurrence if few == occurrence.event else timed_event(evidence, like, few, far, values)
+    occurrence = replace(occurrence, event=predicted_repeats(evidence, like, occurrence.event, values))
     every = best(timed_worth(evidence, bases, occurrence, price, values), EACH)
     some = every[: FEW if len(occurrence.event.every) <= SPANS else 0]
     out = []

@@ -45,7 +45,17 @@ from validation.inference.hypotheses import (
     sample_step,
     timing_step,
 )
-from validation.inference.score import Score, Whitened, average_size, fit_prior, fit_score, whitened
+from validation.inference.score import (
+    Gram,
+    Score,
+    Whitened,
+    average_size,
+    fit_gram,
+    fit_prior,
+    fit_score,
+    score,
+    whitened,
+)
 from validation.noise import Noise
 
 Values = Mapping[str, float]
@@ -63,13 +73,31 @@ FIRST_RUNS = 4  # stretches that tangents like best are run
 class TimedEvent:
     """An event with its ends at the samples.
 
-    log_share : log evidence of all ends of its longest stretch over that of the best ones, less the price of there
-    being so many;  repeats : the same of the others
+    log_area : test and stretch -> log evidence of all its ends over that of the best ones, each for the time (s^2) that
+    it stands for;  length_s : test -> how long its record is (s)
     """
 
     event: Event
-    log_share: float
-    repeats: float = 0.0
+    log_area: Mapping[tuple[str, Span], float]
+    length_s: Mapping[str, float]
+
+    @property
+    def log_share(self) -> float:
+        """Of its longest stretch, less the price of there being so many."""
+        return self._log_shares[0]
+
+    @property
+    def repeats(self) -> float:
+        """The same of the others."""
+        return sum(self._log_shares[1:])
+
+    @property
+    def _log_shares(self) -> list[float]:
+        usual = float(np.mean([b - a for a, b in self.event.every]))
+        longest = sorted(((t, s) for t, pairs in self.event.spans.items() for s in pairs), key=lambda x: -np.ptp(x[1]))
+        half = [(0.5 * self.length_s[t] if n == 0 else LENGTHS * usual) for n, (t, _) in enumerate(longest)]
+        every = [self.length_s[t] * max(WHEN_S, h) for h, (t, _) in zip(half, longest, strict=True)]  # s^2
+        return [self.log_area[x] - float(np.log(area)) for x, area in zip(longest, every, strict=True)]
 
 
 def timed_event(
@@ -79,42 +107,53 @@ def timed_event(
 
     Parameters: `base` the effect that it is taken for; `reach_s` test -> how far (s) an end may move.
     """
-    spans, shares = {t: list(pairs) for t, pairs in event.spans.items()}, list[float]()
-    usual = float(np.mean([b - a for a, b in event.every]))
-    tests = {t.name: t for t in evidence.tests}
+    spans, log_area = {t: list(pairs) for t, pairs in event.spans.items()}, dict[tuple[str, Span], float]()
+    fit, tests = evidence.fit, {t.name: t for t in evidence.tests}
+    grams = event_grams(fit, evidence.tests, base, event, values)
     every = [(t, i) for t, pairs in spans.items() for i in range(len(pairs))]
-    for n, (test, i) in enumerate(sorted(every, key=lambda at: -float(np.ptp(spans[at[0]][at[1]])))):
-        others = {t: [s for k, s in enumerate(all_) if (t, k) != (test, i)] for t, all_ in spans.items()}
-        length = usual if n else None
-        one = timed_span(evidence, base, tests[test], spans[test][i], others, reach_s[test], values, length)
-        spans[test][i] = one.event.spans[test][0]
-        shares.append(one.log_share)
-    return TimedEvent(Event.of(spans), shares[0], sum(shares[1:]))
+    for test, i in sorted(every, key=lambda at: -float(np.ptp(spans[at[0]][at[1]]))):
+        others = [s for k, s in enumerate(spans[test]) if k != i]
+        elsewhere = [g for t, g in grams.items() if t != test]
+        span, area = timed_span(fit, base, tests[test], spans[test][i], others, elsewhere, reach_s[test], values)
+        spans[test][i], log_area[test, span] = span, area
+        if len(spans) > 1:
+            grams |= event_grams(fit, [tests[test]], base, Event.of({test: spans[test]}), values)
+    return TimedEvent(Event.of(spans), log_area, {t: float(np.ptp(tests[t].time)) for t in spans})
+
+
+def event_grams(fit: Fit, tests: Sequence[Test], base: Effect, event: Event, values: Values) -> dict[str, Gram]:
+    """Test -> the Gram matrix of an effect that holds while an event lasts."""
+    here = one_test(fit, tests[0].name) if len(tests) == 1 else fit
+    return fit_gram(here, effect_columns(here, tests, [During.of(base, event.name)], values))
+
+
+def one_test(fit: Fit, test: str) -> Fit:
+    """The fit with the segments of one test."""
+    return replace(fit, parts=tuple(s for s in fit.parts if s.test == test))
 
 
 def timed_span(
-    evidence: Evidence,
+    fit: Fit,
     base: Effect,
     test: Test,
     span: Span,
-    others: Spans,
+    others: Sequence[Span],
+    elsewhere: Sequence[Gram],
     reach_s: float,
     values: Values,
-    usual_s: float | None = None,
-) -> TimedEvent:
+) -> tuple[Span, float]:
     """Begin and end of one span: every two instants around them, each pair a difference of two steps; again around the
-    best of these, until the instants are about as close as samples. All ends have one density per second, whatever the
-    rows: a stretch that is told from others to the second is as much more improbable than one told to the minute.
+    best of these, until the instants are about as close as samples. And its log area, as of `TimedEvent`: all ends have
+    one density per second, whatever the rows.
 
-    usual_s : how long its repeats last, None for the first of them
+    Parameters: `others` the event's other spans in the test; `elsewhere` what it does in the other tests.
     """
-    usual, step = USUAL["switched"] * amplitudes(evidence.fit.network, [base])[-1].prior_sd, timing_step(test)
+    usual, step = USUAL["switched"] * amplitudes(fit.network, [base])[-1].prior_sd, timing_step(test)
     while True:
         begins, ends = instants_around(test, span[0], reach_s), instants_around(test, span[1], reach_s)
         at = np.concatenate([begins, ends])
-        fit, near = closer_look(evidence.fit, test, span, reach_s, values)
-        tests = [near if t.name == test.name else t for t in evidence.tests]
-        step_u, step_V = step_scores(fit, tests, base, near, at, values, others)
+        closer, near = closer_look(fit, test, span, reach_s, values)
+        step_u, step_V = step_scores(one_test(closer, test.name), base, near, at, values, others, elsewhere)
         a, b = (x.ravel() for x in np.meshgrid(np.arange(begins.size), np.arange(begins.size, at.size), indexing="ij"))
         a, b = a[at[a] < at[b]], b[at[a] < at[b]]
         u, V = pulse_scores(step_u, step_V, a, b)
@@ -123,10 +162,8 @@ def timed_span(
         span, reach_s = (float(at[a[best]]), float(at[b[best]])), next_reach(reach_s)
         if reach_s <= COARSEST * step:
             break
-    length = float(np.ptp(test.time))
-    every = length * max(WHEN_S, 0.5 * length if usual_s is None else LENGTHS * usual_s)  # s^2, of begin and end
-    share = np.log(time_around(begins))[a] + np.log(time_around(ends))[b - begins.size] - np.log(every)
-    return TimedEvent(Event.of({test.name: [span]}), float(logsumexp(bayes - bayes[best] + share)))
+    area = np.log(time_around(begins))[a] + np.log(time_around(ends))[b - begins.size]
+    return span, float(logsumexp(bayes - bayes[best] + area))
 
 
 def time_around(instants: Array) -> Array:
@@ -184,18 +221,23 @@ def pulse_scores(u: Array, V: Array, a: NDArray[np.int64], b: NDArray[np.int64])
 
 
 def step_scores(
-    fit: Fit, tests: Sequence[Test], base: Effect, test: Test, at: Array, values: Values, others: Spans
+    fit: Fit, base: Effect, test: Test, at: Array, values: Values, others: Sequence[Span], elsewhere: Sequence[Gram]
 ) -> tuple[Array, Array]:
     """Efficient score (n,) and its covariance of an effect that begins at each of n - 1 instants (s) of a test and
-    lasts; the last is that of the other spans, 0 without any. Instants may be the same: each is run once."""
+    lasts; the last is that of the other spans. Instants may be the same: each is run once.
+
+    Parameters: `fit` with the test's segments; `others` spans in the test, `elsewhere` what they do in other tests.
+    """
     last = float(test.time[-1]) + 1.0
     instants, where = np.unique(at, return_inverse=True)
-    events = [Event.of({test.name: [(t, last)]}) for t in instants]
-    rest = Event.of({t: pairs for t, pairs in others.items() if pairs})
-    effects = [During.of(base, e.name) for e in (*events, *([rest] if rest.spans else []))]
-    s = fit_score(fit, effect_columns(fit, tests, effects, values))
-    missing, order = 0 if rest.spans else 1, np.append(where, instants.size)
-    return np.pad(s.u, (0, missing))[order], np.pad(s.V, (0, missing))[np.ix_(order, order)]
+    events = [Event.of({test.name: spans}) for spans in (*([(t, last)] for t in instants), others) if spans]
+    effects = [During.of(base, e.name) for e in events]
+    G = fit_gram(fit, effect_columns(fit, [test], effects, values))[test.name]
+    G = G.padded(0, instants.size + 1 - len(effects))
+    for more in elsewhere:
+        G = G + more.padded(instants.size, 0)
+    s, order = score(G, *fit_prior(fit), np.zeros(G.Zr.size, int)), np.append(where, instants.size)
+    return s.u[order], s.V[np.ix_(order, order)]
 
 
 def predicted_repeats(evidence: Evidence, base: Effect, event: Event, values: Values) -> Event:

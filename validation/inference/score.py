@@ -49,6 +49,11 @@ class Gram:
         columns = list(effects)
         return replace(self, JZ=self.JZ[:, columns], ZZ=self.ZZ[np.ix_(columns, columns)], Zr=self.Zr[columns])
 
+    def padded(self, before: int, after: int) -> Gram:
+        """The same matrix with effects that do nothing before and after its own."""
+        both = (before, after)
+        return replace(self, JZ=np.pad(self.JZ, ((0, 0), both)), ZZ=np.pad(self.ZZ, both), Zr=np.pad(self.Zr, both))
+
 
 class Whitened(NamedTuple):
     """What a segment says of the nuisances alone.
