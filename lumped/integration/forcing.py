@@ -53,11 +53,15 @@ def forcing(
     stiff: Mask,
     bends: bool,
     every_sample: bool = False,
-) -> Forcing:
-    """u (nt, nb) boundaries;  patterns, curves : the live terms and what they see; those `acting` set the knots
+    merged: float = 0.0,
+) -> tuple[Forcing, Array]:
+    """What drives a run, and the positions of its knots (index of a sample plus share).
+
+    u (nt, nb) boundaries;  patterns, curves : the live terms and what they see; those `acting` set the knots
 
     stiff : which acting terms touch the matrix;  bends : whether one of these follows temperature
-    every_sample : to have a knot at every sample, whether a run needs it or not
+    every_sample : to have a knot at every sample, whether a run needs it or not;  merged : of the largest factor of an
+        interval between two samples, what parabolas may miss there that keep all integrals (boundaries are linear)
     """
     at, sample = _knots(time, [c for c, acts in zip(curves, acting, strict=True) if acts])
     t, source = time, signals
@@ -68,7 +72,16 @@ def forcing(
     ends = [straight(x) for x in u.T]
     indices, wholes = np.arange(t.size), [NONE] * (len(curves) + len(ends))
     if not every_sample:
-        indices, wholes = _needed(t, curves, ends, list(source.values()), signals.missed)
+        missed = signals.missed
+        # also of terms that do not act: a tangent by a film that opens for a while turns where it opens, whatever its
+        # size
+        heats, inputs = [(c, missed * PARABOLA, 0.0) for c in curves], [straight(x) for x in source.values()]
+        more = [*((c, 0.0, missed * PARABOLA_K) for c in ends), *((x, missed * PARABOLA, 0.0) for x in inputs)]
+        indices, wholes = _needed(t, [*heats, *more], np.zeros(t.size, bool))
+    elif merged and t.size > time.size:
+        heats = [(c, merged, 0.0 if acts else np.inf) for c, acts in zip(curves, acting, strict=True)]
+        indices, wholes = _needed(t, heats, sample >= 0)
+        wholes += [NONE] * len(ends)
     factor, bulge = _between(t, indices, curves, wholes[: len(curves)])
     u, arch = _between(t, indices, ends, wholes[len(curves) :])
     knots = t[indices]
@@ -76,24 +89,22 @@ def forcing(
     # first (nk + 1,) and share (nt,) of Forcing.  at (nt,) : which of all knots each sample is
     first, share = np.empty(knots.size + 1, np.int64), np.empty(time.size)
     placed(time, knots, indices, np.flatnonzero(sample >= 0), first, share)
-    return Forcing(knots, u, factor, bulge, arch, renew, first, share)
+    return Forcing(knots, u, factor, bulge, arch, renew, first, share), at[indices]
 
 
-def _needed(
-    time: Array, heats: Sequence[Curve], ends: Sequence[Curve], inputs: Sequence[Array], missed: float
-) -> tuple[Ints, list[Array]]:
-    """Which knots a run needs: between them whatever drives it is a parabola, and so are all inputs of the record.
+def with_boundaries(drive: Forcing, at: Array, u: Array) -> Forcing:
+    """The same with other boundaries (nt, nb), linear between the samples, where its knots are at some positions."""
+    there = np.stack([between(x, at) for x in u.T], axis=1).reshape(at.size, -1)
+    return drive._replace(u=there, arch=np.zeros_like(there))
 
-    And the integrals (nk,) of heats and ends from the first knot; those of what never varies are empty.
 
-    heats : of all terms, those that do not act among them: a tangent by a film that opens for a while turns where it
-    opens, whatever its size;  missed : of Signals
+def _needed(time: Array, curves: Sequence[tuple[Curve, float, float]], fixed: Mask) -> tuple[Ints, list[Array]]:
+    """Which knots a run needs: those fixed, and between them whatever drives it is a parabola.
+
+    And the integrals (nk,) of all curves from the first knot; those of what never varies are empty.
+
+    curves : each with what parabolas may miss of it, as a share of the largest of an interval, and at all
     """
-    curves = [
-        *((c, missed * PARABOLA, 0.0) for c in heats),
-        *((c, 0.0, missed * PARABOLA_K) for c in ends),
-        *((straight(x), missed * PARABOLA, 0.0) for x in inputs),
-    ]
     varying = {i: k for k, i in enumerate(i for i, x in enumerate(curves) if _varies(x[0]))}
     value, bulge, whole = np.empty((3, len(varying), time.size))
     tolerance = np.empty((len(varying), 2))
@@ -102,8 +113,8 @@ def _needed(
         value[k], bulge[k] = c.value, c.bulge
         tolerance[k] = max(most, share * SMALL * _largest(c.value)), share
     out = np.empty(time.size, np.int64)
-    count = needed(time, value, bulge, tolerance, whole, np.empty(4), out)
-    return out[:count], [whole[varying[i]] if i in varying else NONE for i in range(len(heats) + len(ends))]
+    count = needed(time, value, bulge, tolerance, fixed, whole, np.empty(4), out)
+    return out[:count], [whole[varying[i]] if i in varying else NONE for i in range(len(curves))]
 
 
 def _varies(c: Curve) -> bool:

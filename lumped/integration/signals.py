@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping
+from collections import deque
+from collections.abc import Callable, Hashable, Iterable, Mapping, Sequence
 from math import isfinite
 from typing import Any, NamedTuple
 from weakref import ref
@@ -14,9 +15,12 @@ from geom.errors import InputError
 from lumped.integration.curve import FAR, NONE, Between, Curve, Moves, between, curve, parabolas, straight
 from lumped.integration.projection import crowded, projected
 from lumped.numerics.knots import moved
+from lumped.numerics.terms import Forcing
 from lumped.transfer.laws import Fixed, Law
 
 MOST_FINER = 8  # finer ones of one record: every event that is tried needs others, and each holds a factor of every law
+LAST_DRIVES = 4  # of one record: a fit's runs, with tangents and without, of two fits side by side
+DRIVE_NUMBERS = 2**15  # of the factors of one that is kept: 0.8 MB with its bulges and arches
 LONG = 200_000  # samples: of longer records only the factors are kept of which every stretch asks for the whole
 
 
@@ -69,6 +73,7 @@ class Signals(dict[str, Array]):
         self._known: dict[int, tuple[ref[Law], Curve]] = {}
         self._readings: dict[tuple[str, ...], Reading] = {}
         self._finer: dict[bytes, Signals] = {}
+        self._drives: deque[tuple[Hashable, Sequence[Curve], tuple[Forcing, Array]]] = deque(maxlen=LAST_DRIVES)
 
     @classmethod
     def recorded(cls, inputs: Mapping[str, Any], time: Array, at: Array) -> Signals:
@@ -129,6 +134,18 @@ class Signals(dict[str, Array]):
         if self.nt <= LONG or (law.looks_at_all and not law.by_instant):
             self._known[id(law)] = ref(law, _forgetting(self, id(law))), new
         return new
+
+    def driven(
+        self, how: Hashable, curves: Sequence[Curve], work: Callable[[], tuple[Forcing, Array]]
+    ) -> tuple[Forcing, Array]:
+        """What drives a run by some curves, as of `forcing`: a fit's runs differ in multipliers alone, and share it."""
+        for key, before, drive in tuple(self._drives):
+            if key == how and len(before) == len(curves) and all(map(is_same, before, curves)):
+                return drive
+        drive = work()
+        if drive[0].factor.size <= DRIVE_NUMBERS:
+            self._drives.append((how, curves, drive))
+        return drive
 
     def forget(self, key: int) -> None:
         """The factor of a law that is gone."""
@@ -210,6 +227,11 @@ class Signals(dict[str, Array]):
                 f"check {', '.join(law.reads) or 'its numbers'}: no negative exponent of 0",
             )
         return value
+
+
+def is_same(a: Curve, b: Curve) -> bool:
+    """Are two curves one, or one number?"""
+    return a is b or (a.value.ndim == b.value.ndim == 0 and float(a.value) == float(b.value))
 
 
 def _forgetting(signals: Signals, law: int) -> Callable[[Any], None]:

@@ -79,20 +79,25 @@ def _integrated(time, value, bulge, whole):
 
 
 @entry
-def needed(time, value, bulge, tolerance, whole, line, knot):
+def needed(time, value, bulge, tolerance, fixed, whole, line, knot):
     """The knots a run needs, into knot; how many there are.
 
     time (nk,) s;  value (nc, nk) curves at the knots;  bulge (nc, nk) how far each is above the mean of both ends in
-    the middle before a knot;  tolerance (nc, 2) what a parabola may miss: at all, as a share
+    the middle before a knot;  tolerance (nc, 2) what a parabola may miss: at all, as a share;  fixed (nk,) which knots
+    it needs in any case
     whole (nc, nk) : their integrals from the first knot, filled here;  line (4,) scratch
     """
     _integrated(time, value, bulge, whole)
-    i, count, width, jump = 0, 1, 2, 1
+    i, count, width, jump, stop = 0, 1, 2, 1, 1
     knot[0], line[3] = 0, 0.0
     while i < time.size - 1:
         while jump < time.size and (jump <= i or time[jump] > time[jump - 1]):
             jump += 1
-        j = _reached(time, value, bulge, whole, tolerance, line, i, max(width, 2), jump - 1) if jump > i + 1 else i + 1
+        stop = max(stop, i + 1)
+        while stop < jump - 1 and not fixed[stop]:
+            stop += 1
+        last = min(stop, jump - 1)
+        j = _reached(time, value, bulge, whole, tolerance, line, i, max(width, 2), last) if last > i + 1 else i + 1
         width, i = j - i, j
         knot[count] = j
         count += 1

@@ -16,6 +16,8 @@ from small_networks import C1, C2, G2A, G12, two_masses
 
 from geom.errors import ThermoscopeError
 from lumped.declarations.network import read_network
+from lumped.integration.compiled import FIT
+from lumped.integration.signals import Signals
 from lumped.integration.simulate import Record, simulate
 from lumped.model.build import bare_network, node_link, node_source
 from lumped.transfer.laws import Fixed, InputPower, Linear
@@ -165,6 +167,30 @@ def test_inputs_that_move_at_every_sample_keep_every_sample():
     current = {"current_A": 10.0 + np.random.default_rng(0).standard_normal(time.size)}
     network = two_masses(InputPower(100.0, (("current_A", 10.0, 2.0),)))
     assert simulate(network, Record(time, current, {"ambient": 20.0})).steps.knot.size >= 300
+
+
+def test_a_fit_looks_at_a_drive_cycle_in_fewer_steps_than_it_was_recorded_in():
+    """Recorded each half second, looked at each twentieth: heat is kept, and fits ask for what drives them once."""
+    recorded = np.arange(0.0, 2000.5, 0.5)
+    noise = np.random.default_rng(1).standard_normal(recorded.size)
+    current = 10.0 + 6.0 * np.sin(recorded / 7.0) + 0.5 * noise
+    time = recorded[::40]
+    network = two_masses(InputPower(100.0, (("current_A", 10.0, 2.0),)))
+
+    def run(precision, air):
+        record = Record(time, Signals.recorded({"current_A": current}, recorded, time), {"ambient": air})
+        return simulate(network, record, precision=precision, keep_states=True)
+
+    every, fit = run(FIT._replace(merged=0.0), 20.0), run(FIT, 20.0)
+    assert fit.steps.knot.size < 0.6 * every.steps.knot.size
+    assert_allclose(fit.z, every.z, atol=0.02)
+    signals = Signals.recorded({"current_A": current}, recorded, time)
+    warm, cold = (
+        simulate(network, Record(time, signals, {"ambient": air}), precision=FIT, keep_states=True).z
+        for air in (20.0 + time / 100.0, 0.0)
+    )
+    assert_allclose(warm, run(FIT, 20.0 + time / 100.0).z, rtol=1e-12)
+    assert_allclose(cold, run(FIT, 0.0).z, rtol=1e-12)
 
 
 def test_a_run_goes_on_where_another_ended():

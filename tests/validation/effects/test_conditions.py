@@ -19,7 +19,7 @@ from validation.effects.registry import with_effects
 from validation.effects.time_window import Event, checked, event, holds, share
 from validation.inference.columns import effect_columns
 from validation.inference.conditions import tangent_worth
-from validation.inference.events import instants_around, predicted_repeats, step_scores
+from validation.inference.events import event_grams, instants_around, one_test, predicted_repeats, step_scores
 from validation.inference.evidence import calibrated_case, candidates, scored
 from validation.inference.missing_heat import scan_heat
 from validation.inference.score import fit_score
@@ -291,17 +291,26 @@ def test_a_declared_loss_too_high_above_a_load_is_said_in_words():
 
 
 def test_an_instant_that_may_be_a_begin_and_an_end_has_the_score_of_a_step_there():
-    """Instants around both ends of a short stretch overlap."""
+    """Instants around both ends of a short stretch overlap; the sums of tests that it does not move are kept."""
     case = bench((("noon", ((600.0, 1200.0),)),), 1.0)
     fit, film = calibrated_case(case), effect("convection.constant@body")
+    rest = Event.of({"noon": [(3000.0, 3600.0)], "dusk": [(1000.0, 1900.0)]})
+    elsewhere = event_grams(fit, case.tests, film, rest, fit.values)
+    elsewhere.pop("noon")
+    parts = one_test(fit, "noon"), film, case.tests[0]
     once, twice = (
-        step_scores(fit, case.tests, film, case.tests[0], np.array(at), fit.values, {})
+        step_scores(*parts, np.array(at), fit.values, rest.spans["noon"], list(elsewhere.values()))
         for at in ([600.0, 900.0, 1200.0], [600.0, 900.0, 900.0, 1200.0])
     )
     order = [0, 1, 1, 2, 3]
     assert abs(once[0][1]) > 1.0
     np.testing.assert_allclose(twice[0], once[0][order])
     np.testing.assert_allclose(twice[1], once[1][np.ix_(order, order)])
+    steps = [Event.of({"noon": [(t, 6000.0)]}) for t in (600.0, 900.0, 1200.0)]
+    effects = [During.of(film, e.name) for e in (*steps, rest)]
+    whole = fit_score(fit, effect_columns(fit, case.tests, effects, fit.values))
+    np.testing.assert_allclose(once[0], whole.u, rtol=1e-6)
+    np.testing.assert_allclose(once[1], whole.V, rtol=1e-6)
 
 
 def test_what_strays_little_for_a_while_is_weighed_by_its_evidence():
