@@ -12,6 +12,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import pairwise
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -50,6 +51,18 @@ class Interval:
     event: Event
     path: Path
     log_bayes: float
+
+
+class Standing(NamedTuple):
+    """An event that is there already, on a path.
+
+    u, V : its score and variance;  pull : (n_hat,) covariance of every hat with it
+    """
+
+    event: Event
+    u: float
+    V: float
+    pull: Array
 
 
 @dataclass(frozen=True)
@@ -117,6 +130,12 @@ class HatScores:
         (i, w), s = self.course(event, path), self.score
         return float(w @ s.u[i]), float(w @ s.V[np.ix_(i, i)] @ w)
 
+    def standing(self, event: Event, path: Path) -> Standing:
+        """The same, and what every hat has in common with it."""
+        i, w = self.course(event, path)
+        pull = self.score.V[:, i] @ w
+        return Standing(event, float(w @ self.score.u[i]), float(w @ pull[i]), pull)
+
     def weigh(self, event: Event, path: Path) -> Interval:
         """The event with its evidence on a path."""
         u, V = self.sums(event, path)
@@ -166,7 +185,7 @@ def stretches(scores: HatScores, heat: Sequence[MissingHeat], near: Mapping[str,
     return sorted(best, key=lambda s: -worth(scores, s))
 
 
-def best_stretch(scores: HatScores, path: Path, test: str, others: Event | None = None) -> Interval:
+def best_stretch(scores: HatScores, path: Path, test: str, others: Standing | None = None) -> Interval:
     """The stretch of knots with most evidence; all are tried, each a difference of cumulated sums.
 
     others : stretches that are there already, with the same amplitude; log_bayes is then that of all
@@ -174,13 +193,12 @@ def best_stretch(scores: HatScores, path: Path, test: str, others: Event | None 
     (U, P), knots = scores.stretch_sums(path, test), scores.knots[test]
     i, j = np.triu_indices(knots.size + 1, 1)
     if others:
-        (k, w), (linear, square) = scores.course(others, path), scores.sums(others, path)
-        cross = sum(heat * (scores.score.V[np.ix_(n, k)] @ w) for n, heat in scores.ends(path, test))
-        cross = np.concatenate([[0.0], np.cumsum(cross)])
-        U, P = U + linear, P + square + 2.0 * (cross[j] - cross[i])
+        cross = np.cumsum(sum(heat * others.pull[n] for n, heat in scores.ends(path, test)))
+        cross = np.concatenate([[0.0], cross])
+        U, P = U + others.u, P + others.V + 2.0 * (cross[j] - cross[i])
     bayes = scores.evidence(U, P, path)
     if others:
-        covered = np.concatenate([[0.0], np.cumsum(hat_overlap(knots, others.spans.get(test, ())) > 0)])
+        covered = np.concatenate([[0.0], np.cumsum(hat_overlap(knots, others.event.spans.get(test, ())) > 0)])
         bayes = np.where(covered[j] > covered[i], -np.inf, bayes)
     best = int(np.argmax(bayes))
     return Interval(Event.of({test: [knot_span(knots, int(i[best]), int(j[best]))]}), path, float(bayes[best]))
@@ -190,7 +208,8 @@ def repeated(scores: HatScores, first: Interval) -> Interval:
     """A stretch and its repeats of one amplitude, one after another as long as each is worth saying when."""
     best = first
     for _ in range(REPEATS):
-        more = max((best_stretch(scores, first.path, t, best.event) for t in scores.knots), key=lambda s: s.log_bayes)
+        there = scores.standing(best.event, first.path)
+        more = max((best_stretch(scores, first.path, t, there) for t in scores.knots), key=lambda s: s.log_bayes)
         spans = {t: [*best.event.spans.get(t, ()), *more.event.spans.get(t, ())] for t in scores.knots}
         both = Interval(Event.of({t: pairs for t, pairs in spans.items() if pairs}), first.path, more.log_bayes)
         if not np.isfinite(more.log_bayes) or worth(scores, both) <= worth(scores, best):
