@@ -52,7 +52,7 @@ class Hidden:
     least: float = 0.0
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class Archetype:
     """A kind. thermometers : where they really are, by the internal name of the place;  baths : measured boundaries
 
@@ -67,13 +67,13 @@ class Archetype:
     build: Callable[[Draw, Change], Machine]
     plans: tuple[Plan, ...]
     thermometers: Mapping[str, Spot]
-    baths: Mapping[str, Spot]
     missing: tuple[Hidden, ...]
     faults: Mapping[str, Callable[[int], Change]]
     foreign: Mapping[str, Callable[[int], Change]]
     absorbed: Mapping[str, Callable[[int], Change]]
     tense: Mapping[str, float]
     parts: Mapping[str, str]
+    baths: Mapping[str, Spot] = field(default_factory=dict)
     passing: tuple[Hidden, ...] = ()
     logger: Logger = field(default_factory=Logger)
     called: Mapping[str, str] = field(default_factory=dict)

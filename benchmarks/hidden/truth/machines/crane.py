@@ -193,100 +193,93 @@ def ships(rng: Rng, at: Array) -> dict[str, Array]:
     return drive(levels(at, rng, 16.0, 58.0, 3.0), levels(at, rng, 200.0, 2600.0, 4.0), turns(at, rng, 10.0))
 
 
-PLANS = (
-    Plan("direct current", "calibrate", 100.0, direct),
-    Plan("stand", "calibrate", 100.0, stand),
-    Plan("empty hook", "calibrate", 90.0, empty),
-    Plan("first ship", "validate", 100.0, ships),
-    Plan("second ship", "hold-out", 100.0, ships),
-)
-MISSING = (
-    Hidden("draught@frame", lambda a: draught("frame", a), 30.0),
-    Hidden("shaft fan@shield.de", lambda a: spinning("shield.de", a), 20.0),
-    Hidden("coupling heat@bearing.de", lambda a: joined("bearing.de", a), 8.0),
-    Hidden("windage@cage", lambda a: heating("cage", a, (3.0, 2.75)), 100.0),
-    Hidden("friction@bearing.fan", lambda a: heating("bearing.fan", a, (5 / 3, 1.3), fade=0.004), 150.0),
-    Hidden("ac copper@slot", lambda a: heating("slot", a, (2.0, 1.85), (2.0, 2.0), fade=0.002), 900.0),
-    Hidden("load loss@cage", lambda a: heating("cage", a, (2.0, 1.8), (2.0, 2.0)), 900.0),
-    Hidden("pulses@cage", lambda a: switched("cage", a / PULSES, "switching_Hz"), 300.0),
-    Hidden(
-        "no tempco@slot", lambda a: warming("slot", 3.0 * R1, a), ALPHA, ((("losses", "copper", "alpha_1_K"), 0.0),)
-    ),
-)
-PASSING = (
-    Hidden("draught@frame", lambda a: draught("frame", a), 60.0),
-    Hidden("heat@shield.de", lambda a: heating("shield.de", a), 300.0),
-    Hidden("cover@frame", lambda a: covered(("ribs",), a), 0.9),
-    Hidden("blower slower@frame", lambda a: less("blower_on", a), 1.5),
-    Hidden("meter@current_A", lambda a: less("current_A", -a), 0.25, least=METER),
-)
-WORDS = {
-    "draught@frame": ("convection.constant@frame",),
-    "shaft fan@shield.de": ("convection.fan@front", "convection.rotation@front"),
-    "coupling heat@bearing.de": ("conduction.shaft@front bearing", "conduction.shaft@rotor"),
-    "windage@cage": ("windage@cage", "windage@rotor"),
-    "friction@bearing.fan": ("bearing.friction@rear bearing", "loss.factor@rear grease"),
-    "ac copper@slot": ("copper.ac@winding",),
-    "load loss@cage": ("loss.rotor.load@cage",),
-    "pulses@cage": ("iron.pwm@cage", "iron.pwm@rotor"),
-    "no tempco@slot": ("copper.feedback@copper",),
-    "heat@shield.de": ("loss.constant@front",),
-    "cover@frame": ("blockage@frame",),
-    "blower slower@frame": ("input.factor@blower_on",),
-    "meter@current_A": ("input.factor@current_A",),
-}
 CALLED = {"slot": "winding", "head.de": "heads", "yoke": "core", "shield.de": "front", "shield.fan": "rear"}
 CALLED["bearing.de"] = "front bearing"
 READ = {"slot": 0.5, "head.de": 0.5, "yoke": 0.6, "frame": 0.5, "shield.de": 0.4, "shield.fan": 0.4, "bearing.de": 0.7}
-FAULTS = {
-    "sensor.gain@core": lambda seed: faults.gain("yoke", -0.1),
-    "sensor.lag@heads": lambda seed: faults.slow("head.de", 200.0),
-    "sensor.stem@front bearing": lambda seed: faults.stem("bearing.de", 0.25),
-    "sensor.swap@front|rear": lambda seed: faults.swapped("shield.de", "shield.fan"),
-    "sensor.bias@frame": lambda seed: faults.bias("frame", 4.0),
-    "time.offset@stand": lambda seed: Change(in_test={"stand": faults.clock(READ, 240.0)}),
-    "input.factor@current_A": lambda seed: Change(in_test={"stand": faults.factor("current_A", 1.15)}),
-    "ambient.offset@ambient": lambda seed: faults.offset("T_ambient", 5.0),
-    "frozen@rear": lambda seed: faults.frozen("shield.fan", 0.4),
-}
-FOREIGN = {
-    "cable at heads": lambda seed: foreign.cable("head.de", 7.0, 5000.0),
-    "splash at frame": lambda seed: foreign.gusts("frame", 700.0, seed),
-    "rub at rear bearing": lambda seed: foreign.rub("bearing.fan", "rotor", "frame", 60.0),
-    "heater at front": lambda seed: foreign.hot_spell("shield.de", 200.0),
-}
-ABSORBED = {
-    "frame joint": lambda seed: Change({"press": 0.25}),
-    "slot wall": lambda seed: Change({"wall": 0.35}),
-    "blower": lambda seed: Change({"blower": 0.5}),
-    "loss.iron": lambda seed: Change({"iron": 2.2, "eddy": 2.2}),
-}
-TENSE = {
-    "press": 0.25,
-    "wall": 0.2,
-    "blower": 0.12,
-    "iron": 0.15,
-    "cage": 0.12,
-    "bars": 0.25,
-    "still": 0.15,
-    "stray": 0.25,
-}
 PARTS = {**{node: body for body, node in CALLED.items()}, "cage": "cage", "rotor": "rotor", "frame": "frame"}
 PARTS["rear bearing"] = "bearing.fan"
+
+
 CRANE = Archetype(
-    "crane",
-    machine,
-    PLANS,
-    {body: Spot(body, x) for body, x in READ.items()},
-    {},
-    MISSING,
-    FAULTS,
-    FOREIGN,
-    ABSORBED,
-    TENSE,
-    PARTS,
-    PASSING,
-    Logger(30.0, 5.0, 0.1, (10.0, 30.0), 0.1),
-    CALLED,
-    WORDS,
+    name="crane",
+    build=machine,
+    plans=(
+        Plan("direct current", "calibrate", 100.0, direct),
+        Plan("stand", "calibrate", 100.0, stand),
+        Plan("empty hook", "calibrate", 90.0, empty),
+        Plan("first ship", "validate", 100.0, ships),
+        Plan("second ship", "hold-out", 100.0, ships),
+    ),
+    thermometers={body: Spot(body, x) for body, x in READ.items()},
+    missing=(
+        Hidden("draught@frame", lambda a: draught("frame", a), 30.0),
+        Hidden("shaft fan@shield.de", lambda a: spinning("shield.de", a), 20.0),
+        Hidden("coupling heat@bearing.de", lambda a: joined("bearing.de", a), 8.0),
+        Hidden("windage@cage", lambda a: heating("cage", a, (3.0, 2.75)), 100.0),
+        Hidden("friction@bearing.fan", lambda a: heating("bearing.fan", a, (5 / 3, 1.3), fade=0.004), 150.0),
+        Hidden("ac copper@slot", lambda a: heating("slot", a, (2.0, 1.85), (2.0, 2.0), fade=0.002), 900.0),
+        Hidden("load loss@cage", lambda a: heating("cage", a, (2.0, 1.8), (2.0, 2.0)), 900.0),
+        Hidden("pulses@cage", lambda a: switched("cage", a / PULSES, "switching_Hz"), 300.0),
+        Hidden(
+            "no tempco@slot", lambda a: warming("slot", 3.0 * R1, a), ALPHA, ((("losses", "copper", "alpha_1_K"), 0.0),)
+        ),
+    ),
+    faults={
+        "sensor.gain@core": lambda seed: faults.gain("yoke", -0.1),
+        "sensor.lag@heads": lambda seed: faults.slow("head.de", 200.0),
+        "sensor.stem@front bearing": lambda seed: faults.stem("bearing.de", 0.25),
+        "sensor.swap@front|rear": lambda seed: faults.swapped("shield.de", "shield.fan"),
+        "sensor.bias@frame": lambda seed: faults.bias("frame", 4.0),
+        "time.offset@stand": lambda seed: Change(in_test={"stand": faults.clock(READ, 240.0)}),
+        "input.factor@current_A": lambda seed: Change(in_test={"stand": faults.factor("current_A", 1.15)}),
+        "ambient.offset@ambient": lambda seed: faults.offset("T_ambient", 5.0),
+        "frozen@rear": lambda seed: faults.frozen("shield.fan", 0.4),
+    },
+    foreign={
+        "cable at heads": lambda seed: foreign.cable("head.de", 7.0, 5000.0),
+        "splash at frame": lambda seed: foreign.gusts("frame", 700.0, seed),
+        "rub at rear bearing": lambda seed: foreign.rub("bearing.fan", "rotor", "frame", 60.0),
+        "heater at front": lambda seed: foreign.hot_spell("shield.de", 200.0),
+    },
+    absorbed={
+        "frame joint": lambda seed: Change({"press": 0.25}),
+        "slot wall": lambda seed: Change({"wall": 0.35}),
+        "blower": lambda seed: Change({"blower": 0.5}),
+        "loss.iron": lambda seed: Change({"iron": 2.2, "eddy": 2.2}),
+    },
+    tense={
+        "press": 0.25,
+        "wall": 0.2,
+        "blower": 0.12,
+        "iron": 0.15,
+        "cage": 0.12,
+        "bars": 0.25,
+        "still": 0.15,
+        "stray": 0.25,
+    },
+    parts=PARTS,
+    passing=(
+        Hidden("draught@frame", lambda a: draught("frame", a), 60.0),
+        Hidden("heat@shield.de", lambda a: heating("shield.de", a), 300.0),
+        Hidden("cover@frame", lambda a: covered(("ribs",), a), 0.9),
+        Hidden("blower slower@frame", lambda a: less("blower_on", a), 1.5),
+        Hidden("meter@current_A", lambda a: less("current_A", -a), 0.25, least=METER),
+    ),
+    logger=Logger(30.0, 5.0, 0.1, (10.0, 30.0), 0.1),
+    called=CALLED,
+    words={
+        "draught@frame": ("convection.constant@frame",),
+        "shaft fan@shield.de": ("convection.fan@front", "convection.rotation@front"),
+        "coupling heat@bearing.de": ("conduction.shaft@front bearing", "conduction.shaft@rotor"),
+        "windage@cage": ("windage@cage", "windage@rotor"),
+        "friction@bearing.fan": ("bearing.friction@rear bearing", "loss.factor@rear grease"),
+        "ac copper@slot": ("copper.ac@winding",),
+        "load loss@cage": ("loss.rotor.load@cage",),
+        "pulses@cage": ("iron.pwm@cage", "iron.pwm@rotor"),
+        "no tempco@slot": ("copper.feedback@copper",),
+        "heat@shield.de": ("loss.constant@front",),
+        "cover@frame": ("blockage@frame",),
+        "blower slower@frame": ("input.factor@blower_on",),
+        "meter@current_A": ("input.factor@current_A",),
+    },
 )

@@ -188,89 +188,62 @@ def road(rng: Rng, at: Array) -> dict[str, Array]:
     return drive(levels(at, rng, 10.0, 95.0, 3.0), levels(at, rng, 300.0, 4000.0, 5.0), turns(at, rng, 10.0), wind)
 
 
-PLANS = (
-    Plan("locked rotor", "calibrate", 80.0, locked),
-    Plan("bench", "calibrate", 80.0, bench),
-    Plan("coast", "calibrate", 60.0, coast),
-    Plan("road", "validate", 80.0, road),
-    Plan("road back", "hold-out", 80.0, road),
-)
-MISSING = (
-    Hidden("road wind@ring", lambda a: airflow("ring", a), 20.0),
-    Hidden("shaft fan@cover.right", lambda a: spinning("cover.right", a), 10.0),
-    Hidden("draught@cover.left", lambda a: draught("cover.left", a), 10.0),
-    Hidden("windage@rotor.left", lambda a: heating("rotor.left", a, (3.0, 2.8)), 30.0),
-    Hidden("ac copper@coils", lambda a: heating("coils", a, (2.0, 1.85), (2.0, 2.0), fade=0.002), 300.0),
-    Hidden("load loss@magnets.left", lambda a: heating("magnets.left", a, (2.0, 1.8), (2.0, 2.0)), 60.0),
-    Hidden("bridge@coils-ring", lambda a: bridge("leads", a, "coils", "ring", (0.9, 0.5)), 12.0),
-    Hidden(
-        "no tempco@coils", lambda a: warming("coils", 3.0 * R20, a), ALPHA, ((("losses", "joule", "alpha_1_K"), 0.0),)
-    ),
-)
-WORDS = {
-    "road wind@ring": ("convection@stator_ring",),
-    "shaft fan@cover.right": ("convection.fan@cover_R", "convection.rotation@cover_R"),
-    "draught@cover.left": ("convection.constant@cover_L",),
-    "windage@rotor.left": ("windage@disc_L", "windage@pm_L"),
-    "ac copper@coils": ("copper.ac@coils",),
-    "load loss@magnets.left": ("loss.rotor.load@pm_L",),
-    "bridge@coils-ring": ("coupling@coils|stator_ring",),
-    "no tempco@coils": ("copper.feedback@joule",),
-    "draught@ring": ("convection.constant@stator_ring",),
-    "side blower@cover.right": ("convection.constant@cover_R",),
-    "heat@cover.left": ("loss.constant@cover_L",),
-    "blower slower@air": ("input.factor@blower_on",),
-    "cover@ring": ("blockage@stator_ring",),
-    "meter@current_A": ("input.factor@current_A",),
-}
-FAULTS = {
-    "sensor.gain@coils": lambda seed: faults.gain("coils", -0.08),
-    "sensor.lag@coils": lambda seed: faults.slow("coils", 100.0),
-    "sensor.swap@cover_L|cover_R": lambda seed: faults.swapped("cover.left", "cover.right"),
-    "sensor.drift@stator_ring": lambda seed: faults.drift("ring", 5.0),
-    "sensor.stem@teeth": lambda seed: faults.stem("teeth", 0.2),
-    "time.offset@bench": lambda seed: Change(
-        in_test={"bench": faults.clock(("coils", "teeth", "ring", "cover.left", "cover.right"), -180.0)}
-    ),
-    "input.factor@current_A": lambda seed: faults.factor("current_A", 0.88),
-    "ambient.offset@ambient": lambda seed: faults.offset("T_ambient", -4.0),
-    "clipped@coils": lambda seed: faults.clipped("coils", 0.6),
-}
-FOREIGN = {
-    "cable at coils": lambda seed: foreign.cable("coils", 3.0, 1500.0),
-    "splash at stator_ring": lambda seed: foreign.gusts("ring", 150.0, seed),
-    "demagnetisation at pm_R": lambda seed: foreign.runaway("magnets.right", 60.0, 45.0),
-}
-ABSORBED = {
-    "coil joint": lambda seed: Change({"resin": 0.3}),
-    "loss.iron": lambda seed: Change({"iron": 2.2}),
-    "discs": lambda seed: Change({"discs": 0.45}),
-}
-PASSING = (
-    Hidden("draught@ring", lambda a: draught("ring", a), 30.0),
-    Hidden("side blower@cover.right", lambda a: blown("cover.right", a, "blower_on"), 20.0),
-    Hidden("heat@cover.left", lambda a: heating("cover.left", a), 150.0),
-    Hidden("blower slower@air", lambda a: less("blower_on", a), 1.5),
-    Hidden("cover@ring", lambda a: covered(("rim",), a), 0.9),
-    Hidden("meter@current_A", lambda a: less("current_A", a), 0.5, least=METER),
-)
 DISC = Archetype(
-    "disc",
-    machine,
-    PLANS,
-    {
+    name="disc",
+    build=machine,
+    plans=(
+        Plan("locked rotor", "calibrate", 80.0, locked),
+        Plan("bench", "calibrate", 80.0, bench),
+        Plan("coast", "calibrate", 60.0, coast),
+        Plan("road", "validate", 80.0, road),
+        Plan("road back", "hold-out", 80.0, road),
+    ),
+    thermometers={
         "coils": Spot("coils", 0.5),
         "teeth": Spot("teeth", 0.5),
         "ring": Spot("ring", 0.5),
         "cover.left": Spot("cover.left", 0.5),
         "cover.right": Spot("cover.right", 0.5),
     },
-    {},
-    MISSING,
-    FAULTS,
-    FOREIGN,
-    ABSORBED,
-    {
+    missing=(
+        Hidden("road wind@ring", lambda a: airflow("ring", a), 20.0),
+        Hidden("shaft fan@cover.right", lambda a: spinning("cover.right", a), 10.0),
+        Hidden("draught@cover.left", lambda a: draught("cover.left", a), 10.0),
+        Hidden("windage@rotor.left", lambda a: heating("rotor.left", a, (3.0, 2.8)), 30.0),
+        Hidden("ac copper@coils", lambda a: heating("coils", a, (2.0, 1.85), (2.0, 2.0), fade=0.002), 300.0),
+        Hidden("load loss@magnets.left", lambda a: heating("magnets.left", a, (2.0, 1.8), (2.0, 2.0)), 60.0),
+        Hidden("bridge@coils-ring", lambda a: bridge("leads", a, "coils", "ring", (0.9, 0.5)), 12.0),
+        Hidden(
+            "no tempco@coils",
+            lambda a: warming("coils", 3.0 * R20, a),
+            ALPHA,
+            ((("losses", "joule", "alpha_1_K"), 0.0),),
+        ),
+    ),
+    faults={
+        "sensor.gain@coils": lambda seed: faults.gain("coils", -0.08),
+        "sensor.lag@coils": lambda seed: faults.slow("coils", 100.0),
+        "sensor.swap@cover_L|cover_R": lambda seed: faults.swapped("cover.left", "cover.right"),
+        "sensor.drift@stator_ring": lambda seed: faults.drift("ring", 5.0),
+        "sensor.stem@teeth": lambda seed: faults.stem("teeth", 0.2),
+        "time.offset@bench": lambda seed: Change(
+            in_test={"bench": faults.clock(("coils", "teeth", "ring", "cover.left", "cover.right"), -180.0)}
+        ),
+        "input.factor@current_A": lambda seed: faults.factor("current_A", 0.88),
+        "ambient.offset@ambient": lambda seed: faults.offset("T_ambient", -4.0),
+        "clipped@coils": lambda seed: faults.clipped("coils", 0.6),
+    },
+    foreign={
+        "cable at coils": lambda seed: foreign.cable("coils", 3.0, 1500.0),
+        "splash at stator_ring": lambda seed: foreign.gusts("ring", 150.0, seed),
+        "demagnetisation at pm_R": lambda seed: foreign.runaway("magnets.right", 60.0, 45.0),
+    },
+    absorbed={
+        "coil joint": lambda seed: Change({"resin": 0.3}),
+        "loss.iron": lambda seed: Change({"iron": 2.2}),
+        "discs": lambda seed: Change({"discs": 0.45}),
+    },
+    tense={
         "resin": 0.2,
         "clamp": 0.25,
         "discs": 0.15,
@@ -280,7 +253,7 @@ DISC = Archetype(
         "rim-left": 0.25,
         "hub-right": 0.25,
     },
-    {
+    parts={
         "coils": "coils",
         "teeth": "teeth",
         "stator_ring": "ring",
@@ -292,8 +265,30 @@ DISC = Archetype(
         "cover_L": "cover.left",
         "cover_R": "cover.right",
     },
-    PASSING,
-    Logger(20.0, 5.0, 0.1, (3.0, 12.0), 0.08),
-    {"ring": "stator_ring", "cover.left": "cover_L", "cover.right": "cover_R"},
-    WORDS,
+    passing=(
+        Hidden("draught@ring", lambda a: draught("ring", a), 30.0),
+        Hidden("side blower@cover.right", lambda a: blown("cover.right", a, "blower_on"), 20.0),
+        Hidden("heat@cover.left", lambda a: heating("cover.left", a), 150.0),
+        Hidden("blower slower@air", lambda a: less("blower_on", a), 1.5),
+        Hidden("cover@ring", lambda a: covered(("rim",), a), 0.9),
+        Hidden("meter@current_A", lambda a: less("current_A", a), 0.5, least=METER),
+    ),
+    logger=Logger(20.0, 5.0, 0.1, (3.0, 12.0), 0.08),
+    called={"ring": "stator_ring", "cover.left": "cover_L", "cover.right": "cover_R"},
+    words={
+        "road wind@ring": ("convection@stator_ring",),
+        "shaft fan@cover.right": ("convection.fan@cover_R", "convection.rotation@cover_R"),
+        "draught@cover.left": ("convection.constant@cover_L",),
+        "windage@rotor.left": ("windage@disc_L", "windage@pm_L"),
+        "ac copper@coils": ("copper.ac@coils",),
+        "load loss@magnets.left": ("loss.rotor.load@pm_L",),
+        "bridge@coils-ring": ("coupling@coils|stator_ring",),
+        "no tempco@coils": ("copper.feedback@joule",),
+        "draught@ring": ("convection.constant@stator_ring",),
+        "side blower@cover.right": ("convection.constant@cover_R",),
+        "heat@cover.left": ("loss.constant@cover_L",),
+        "blower slower@air": ("input.factor@blower_on",),
+        "cover@ring": ("blockage@stator_ring",),
+        "meter@current_A": ("input.factor@current_A",),
+    },
 )

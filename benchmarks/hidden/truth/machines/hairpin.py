@@ -232,45 +232,6 @@ def passes(rng: Rng, at: Array) -> dict[str, Array]:
     return drive(current, speed, levels(at, rng, 6.5, 12.0, 14.0), levels(at, rng, 0.0, 25.0, 4.0))
 
 
-PLANS = (
-    Plan("direct current", "calibrate", 75.0, direct),
-    Plan("load", "calibrate", 75.0, load),
-    Plan("speeds", "calibrate", 75.0, speeds),
-    Plan("mountain pass", "validate", 75.0, passes),
-    Plan("way home", "hold-out", 75.0, passes),
-)
-MISSING = (
-    Hidden("road wind@housing", lambda a: airflow("housing", a), 60.0),
-    Hidden("draught@rear", lambda a: draught("rear", a), 20.0),
-    Hidden("windage@rotor", lambda a: heating("rotor", a, (3.0, 2.8)), 15.0),
-    Hidden("load loss@magnets", lambda a: heating("magnets", a, (2.0, 1.8), (2.0, 2.0)), 60.0),
-    Hidden("ac copper@layer.4", lambda a: heating("layer.4", a, (2.0, 1.8), (2.0, 2.0), fade=0.002), 60.0),
-    Hidden("loop currents@layer.1", lambda a: heating("layer.1", a, current=(2.0, 2.0)), 150.0),
-    Hidden("terminals@weld", lambda a: bridge("terminals", a, "weld", "housing", (0.9, 0.1)), 15.0),
-    Hidden("blocked nozzles@weld", lambda a: covered(("spray.weld",), a), 0.9),
-    Hidden("heat@front", lambda a: heating("front", a), 200.0),
-)
-PASSING = (
-    Hidden("draught@housing", lambda a: draught("housing", a), 60.0),
-    Hidden("heat@front", lambda a: heating("front", a), 250.0),
-    Hidden("pump@oil", lambda a: less("flow_l_min", a), 1.0),
-    Hidden("cover@housing", lambda a: covered(("drum",), a), 0.9),
-    Hidden("meter@current_A", lambda a: less("current_A", a), 0.5, least=METER),
-)
-WORDS = {
-    "road wind@housing": ("convection@housing",),
-    "draught@rear": ("convection.constant@rear cover",),
-    "load loss@magnets": ("loss.rotor.load@rotor",),
-    "ac copper@layer.4": ("copper.ac@layer 4",),
-    "loop currents@layer.1": ("loss.winding@layer 1", "loss.factor@copper 1"),
-    "terminals@weld": ("coupling@weld side|housing", "coupling@housing|weld side"),
-    "blocked nozzles@weld": ("nozzles@weld side",),
-    "heat@front": ("loss.constant@front cover",),
-    "draught@housing": ("convection.constant@housing",),
-    "pump@oil": ("flow@circuit.spray", "input.factor@flow_l_min"),
-    "cover@housing": ("blockage@housing",),
-    "meter@current_A": ("input.factor@current_A",),
-}
 READ = {
     "layer.1": 0.5,
     "layer.4": 0.5,
@@ -283,55 +244,87 @@ READ = {
 }
 CALLED = {"layer.1": "layer 1", "layer.4": "layer 4", "weld": "weld side", "bend": "bend side", "yoke": "core"}
 CALLED |= {"front": "front cover", "tank": "spray.reservoir"}
-FAULTS = {
-    "sensor.gain@core": lambda seed: faults.gain("yoke", -0.12),
-    "sensor.lag@weld side": lambda seed: faults.slow("weld", 100.0),
-    "sensor.stem@layer 4": lambda seed: faults.stem("layer.4", 0.2),
-    "sensor.swap@bend side|weld side": lambda seed: faults.swapped("weld", "bend"),
-    "sensor.drift@housing": lambda seed: faults.drift("housing", 5.0),
-    "time.offset@load": lambda seed: Change(in_test={"load": faults.clock(READ, 150.0)}),
-    "input.factor@current_A": lambda seed: Change(in_test={"load": faults.factor("current_A", 1.15)}),
-    "ambient.offset@ambient": lambda seed: faults.offset("T_ambient", 5.0),
-    "frozen@front cover": lambda seed: faults.frozen("front", 0.5),
-}
-FOREIGN = {
-    "cable at bend side": lambda seed: foreign.cable("bend", 7.0, 3000.0),
-    "splash at housing": lambda seed: foreign.gusts("housing", 700.0, seed),
-    "demagnetisation at rotor": lambda seed: foreign.runaway("magnets", 80.0, 60.0),
-    "heater at front cover": lambda seed: foreign.hot_spell("front", 200.0),
-}
-ABSORBED = {
-    "housing fit": lambda seed: Change({"fit": 0.2}),
-    "slot sides": lambda seed: Change({"wall": 0.3}),
-    "film.spray": lambda seed: Change({"spray": 0.35}),
-    "loss.iron": lambda seed: Change({"iron": 2.2, "eddy": 2.2}),
-}
-TENSE = {
-    "fit": 0.25,
-    "wall": 0.2,
-    "spray": 0.2,
-    "cooler": 0.15,
-    "iron": 0.15,
-    "ac": 0.2,
-    "wet rotor": 0.25,
-    "still": 0.15,
-}
 PARTS = {node: body for body, node in CALLED.items() if body != "tank"}
 PARTS |= {"rotor": "rotor", "housing": "housing", "rear cover": "rear", "layer 2": "layer.2", "layer 3": "layer.3"}
+
+
 HAIRPIN = Archetype(
-    "hairpin",
-    machine,
-    PLANS,
-    {body: Spot(body, x) for body, x in READ.items()},
-    {},
-    MISSING,
-    FAULTS,
-    FOREIGN,
-    ABSORBED,
-    TENSE,
-    PARTS,
-    PASSING,
-    Logger(20.0, 5.0, 0.1, (2.0, 12.0), 0.08),
-    CALLED,
-    WORDS,
+    name="hairpin",
+    build=machine,
+    plans=(
+        Plan("direct current", "calibrate", 75.0, direct),
+        Plan("load", "calibrate", 75.0, load),
+        Plan("speeds", "calibrate", 75.0, speeds),
+        Plan("mountain pass", "validate", 75.0, passes),
+        Plan("way home", "hold-out", 75.0, passes),
+    ),
+    thermometers={body: Spot(body, x) for body, x in READ.items()},
+    missing=(
+        Hidden("road wind@housing", lambda a: airflow("housing", a), 60.0),
+        Hidden("draught@rear", lambda a: draught("rear", a), 20.0),
+        Hidden("windage@rotor", lambda a: heating("rotor", a, (3.0, 2.8)), 15.0),
+        Hidden("load loss@magnets", lambda a: heating("magnets", a, (2.0, 1.8), (2.0, 2.0)), 60.0),
+        Hidden("ac copper@layer.4", lambda a: heating("layer.4", a, (2.0, 1.8), (2.0, 2.0), fade=0.002), 60.0),
+        Hidden("loop currents@layer.1", lambda a: heating("layer.1", a, current=(2.0, 2.0)), 150.0),
+        Hidden("terminals@weld", lambda a: bridge("terminals", a, "weld", "housing", (0.9, 0.1)), 15.0),
+        Hidden("blocked nozzles@weld", lambda a: covered(("spray.weld",), a), 0.9),
+        Hidden("heat@front", lambda a: heating("front", a), 200.0),
+    ),
+    faults={
+        "sensor.gain@core": lambda seed: faults.gain("yoke", -0.12),
+        "sensor.lag@weld side": lambda seed: faults.slow("weld", 100.0),
+        "sensor.stem@layer 4": lambda seed: faults.stem("layer.4", 0.2),
+        "sensor.swap@bend side|weld side": lambda seed: faults.swapped("weld", "bend"),
+        "sensor.drift@housing": lambda seed: faults.drift("housing", 5.0),
+        "time.offset@load": lambda seed: Change(in_test={"load": faults.clock(READ, 150.0)}),
+        "input.factor@current_A": lambda seed: Change(in_test={"load": faults.factor("current_A", 1.15)}),
+        "ambient.offset@ambient": lambda seed: faults.offset("T_ambient", 5.0),
+        "frozen@front cover": lambda seed: faults.frozen("front", 0.5),
+    },
+    foreign={
+        "cable at bend side": lambda seed: foreign.cable("bend", 7.0, 3000.0),
+        "splash at housing": lambda seed: foreign.gusts("housing", 700.0, seed),
+        "demagnetisation at rotor": lambda seed: foreign.runaway("magnets", 80.0, 60.0),
+        "heater at front cover": lambda seed: foreign.hot_spell("front", 200.0),
+    },
+    absorbed={
+        "housing fit": lambda seed: Change({"fit": 0.2}),
+        "slot sides": lambda seed: Change({"wall": 0.3}),
+        "film.spray": lambda seed: Change({"spray": 0.35}),
+        "loss.iron": lambda seed: Change({"iron": 2.2, "eddy": 2.2}),
+    },
+    tense={
+        "fit": 0.25,
+        "wall": 0.2,
+        "spray": 0.2,
+        "cooler": 0.15,
+        "iron": 0.15,
+        "ac": 0.2,
+        "wet rotor": 0.25,
+        "still": 0.15,
+    },
+    parts=PARTS,
+    passing=(
+        Hidden("draught@housing", lambda a: draught("housing", a), 60.0),
+        Hidden("heat@front", lambda a: heating("front", a), 250.0),
+        Hidden("pump@oil", lambda a: less("flow_l_min", a), 1.0),
+        Hidden("cover@housing", lambda a: covered(("drum",), a), 0.9),
+        Hidden("meter@current_A", lambda a: less("current_A", a), 0.5, least=METER),
+    ),
+    logger=Logger(20.0, 5.0, 0.1, (2.0, 12.0), 0.08),
+    called=CALLED,
+    words={
+        "road wind@housing": ("convection@housing",),
+        "draught@rear": ("convection.constant@rear cover",),
+        "load loss@magnets": ("loss.rotor.load@rotor",),
+        "ac copper@layer.4": ("copper.ac@layer 4",),
+        "loop currents@layer.1": ("loss.winding@layer 1", "loss.factor@copper 1"),
+        "terminals@weld": ("coupling@weld side|housing", "coupling@housing|weld side"),
+        "blocked nozzles@weld": ("nozzles@weld side",),
+        "heat@front": ("loss.constant@front cover",),
+        "draught@housing": ("convection.constant@housing",),
+        "pump@oil": ("flow@circuit.spray", "input.factor@flow_l_min"),
+        "cover@housing": ("blockage@housing",),
+        "meter@current_A": ("input.factor@current_A",),
+    },
 )

@@ -175,83 +175,75 @@ def works(rng: Rng, at: Array) -> dict[str, Array]:
     return drive(levels(at, rng, 10.0, 105.0, 8.0), volts, turns(at, rng, 20.0), turns(at, rng, 20.0))
 
 
-PLANS = (
-    Plan("no load", "calibrate", 180.0, no_load),
-    Plan("short circuit", "calibrate", 180.0, shorted),
-    Plan("heat run", "calibrate", 180.0, heat_run),
-    Plan("Monday", "validate", 180.0, works),
-    Plan("Tuesday", "hold-out", 180.0, works),
-)
 NO_TEMPCO = tuple((("losses", loss, "alpha_1_K"), 0.0) for loss in ("low", "high"))
-MISSING = (
-    Hidden("draught@hv.outer", lambda a: draught("hv.outer", a), 15.0),
-    Hidden("cable@lv.outer", lambda a: draught("lv.outer", a), 10.0),
-    Hidden("lamp@clamp", lambda a: heating("clamp", a), 150.0),
-    Hidden("harmonics@hv.mid", lambda a: heating("hv.mid", a, current=(2.0, 1.9)), 400.0),
-    Hidden("harmonics@lv.outer", lambda a: heating("lv.outer", a, current=(2.0, 1.9)), 600.0),
-    Hidden("bridge@clamp-lv.outer", lambda a: bridge("blocks", a, "clamp", "lv.outer", (0.5, 0.0)), 8.0),
-    Hidden("dust@hv.outer", lambda a: fading("hv.outer", a), 0.5),
-    Hidden("no tempco@lv", lambda a: warming("lv.outer", 2.0 * R_LV, a), ALPHA, NO_TEMPCO[:1]),
-)
-PASSING = (
-    Hidden("draught@hv.outer", lambda a: draught("hv.outer", a), 20.0),
-    Hidden("lamp@clamp", lambda a: heating("clamp", a), 200.0),
-    Hidden("cover@hv.outer", lambda a: covered(("face.outer",), a), 0.9),
-    Hidden("stage slower@ducts", lambda a: less("stage1_on", a), 1.5),
-    Hidden("meter@current_A", lambda a: less("current_A", -a), 0.3, least=METER),
-)
-WORDS = {
-    "draught@hv.outer": ("convection.constant@HV outer",),
-    "cable@lv.outer": ("conduction.cable@LV outer", "convection.constant@LV outer"),
-    "lamp@clamp": ("loss.constant@clamp",),
-    "harmonics@hv.mid": ("loss.winding@HV middle",),
-    "harmonics@lv.outer": ("loss.winding@LV outer",),
-    "bridge@clamp-lv.outer": ("coupling@clamp|LV outer", "coupling@LV outer|clamp"),
-    "dust@hv.outer": ("fouling@HV outer",),
-    "no tempco@lv": ("copper.feedback@low",),
-    "cover@hv.outer": ("blockage@HV outer",),
-    "stage slower@ducts": ("input.factor@stage1_on",),
-    "meter@current_A": ("input.factor@current_A",),
-}
 READ = {"lv.mid": 0.6, "lv.outer": 0.5, "hv.mid": 0.5, "hv.outer": 0.5, "yoke": 0.5, "clamp": 0.5}
 CALLED = {"lv.mid": "LV middle", "lv.outer": "LV outer", "hv.mid": "HV middle", "hv.outer": "HV outer"}
-FAULTS = {
-    "sensor.gain@LV middle": lambda seed: faults.gain("lv.mid", -0.1),
-    "sensor.lag@LV outer": lambda seed: faults.slow("lv.outer", 400.0),
-    "sensor.stem@HV middle": lambda seed: faults.stem("hv.mid", 0.25),
-    "sensor.swap@HV middle|HV outer": lambda seed: faults.swapped("hv.mid", "hv.outer"),
-    "sensor.drift@yoke": lambda seed: faults.drift("yoke", 2.5),
-    "time.offset@heat run": lambda seed: Change(in_test={"heat run": faults.clock(READ, 420.0)}),
-    "input.factor@current_A": lambda seed: Change(in_test={"heat run": faults.factor("current_A", 1.15)}),
-    "ambient.offset@ambient": lambda seed: faults.offset("T_ambient", 5.0),
-    "frozen@clamp": lambda seed: faults.frozen("clamp", 0.4),
-}
-FOREIGN = {
-    "cable at LV outer": lambda seed: foreign.cable("lv.outer", 5.0, 6000.0),
-    "splash at HV outer": lambda seed: foreign.gusts("hv.outer", 500.0, seed),
-    "heater at clamp": lambda seed: foreign.hot_spell("clamp", 120.0),
-}
-ABSORBED = {
-    "link.tie": lambda seed: Change({"tie": 0.25}),
-    "chimney": lambda seed: Change({"chimney": 0.45}),
-    "loss.iron": lambda seed: Change({"iron": 2.0}),
-}
-TENSE = {"tie": 0.25, "chimney": 0.15, "still": 0.12, "blown": 0.15, "iron": 0.12, "corners": 0.2, "slit": 0.25}
-PARTS = {**{node: body for body, node in CALLED.items()}, "yoke": "yoke", "clamp": "clamp", "limbs": "limb.outer"}
+
+
 TRANSFORMER = Archetype(
-    "transformer",
-    machine,
-    PLANS,
-    {body: Spot(body, x) for body, x in READ.items()},
-    {},
-    MISSING,
-    FAULTS,
-    FOREIGN,
-    ABSORBED,
-    TENSE,
-    PARTS,
-    PASSING,
-    Logger(60.0, 10.0, 0.1, (15.0, 60.0), 0.1),
-    CALLED,
-    WORDS,
+    name="transformer",
+    build=machine,
+    plans=(
+        Plan("no load", "calibrate", 180.0, no_load),
+        Plan("short circuit", "calibrate", 180.0, shorted),
+        Plan("heat run", "calibrate", 180.0, heat_run),
+        Plan("Monday", "validate", 180.0, works),
+        Plan("Tuesday", "hold-out", 180.0, works),
+    ),
+    thermometers={body: Spot(body, x) for body, x in READ.items()},
+    missing=(
+        Hidden("draught@hv.outer", lambda a: draught("hv.outer", a), 15.0),
+        Hidden("cable@lv.outer", lambda a: draught("lv.outer", a), 10.0),
+        Hidden("lamp@clamp", lambda a: heating("clamp", a), 150.0),
+        Hidden("harmonics@hv.mid", lambda a: heating("hv.mid", a, current=(2.0, 1.9)), 400.0),
+        Hidden("harmonics@lv.outer", lambda a: heating("lv.outer", a, current=(2.0, 1.9)), 600.0),
+        Hidden("bridge@clamp-lv.outer", lambda a: bridge("blocks", a, "clamp", "lv.outer", (0.5, 0.0)), 8.0),
+        Hidden("dust@hv.outer", lambda a: fading("hv.outer", a), 0.5),
+        Hidden("no tempco@lv", lambda a: warming("lv.outer", 2.0 * R_LV, a), ALPHA, NO_TEMPCO[:1]),
+    ),
+    faults={
+        "sensor.gain@LV middle": lambda seed: faults.gain("lv.mid", -0.1),
+        "sensor.lag@LV outer": lambda seed: faults.slow("lv.outer", 400.0),
+        "sensor.stem@HV middle": lambda seed: faults.stem("hv.mid", 0.25),
+        "sensor.swap@HV middle|HV outer": lambda seed: faults.swapped("hv.mid", "hv.outer"),
+        "sensor.drift@yoke": lambda seed: faults.drift("yoke", 2.5),
+        "time.offset@heat run": lambda seed: Change(in_test={"heat run": faults.clock(READ, 420.0)}),
+        "input.factor@current_A": lambda seed: Change(in_test={"heat run": faults.factor("current_A", 1.15)}),
+        "ambient.offset@ambient": lambda seed: faults.offset("T_ambient", 5.0),
+        "frozen@clamp": lambda seed: faults.frozen("clamp", 0.4),
+    },
+    foreign={
+        "cable at LV outer": lambda seed: foreign.cable("lv.outer", 5.0, 6000.0),
+        "splash at HV outer": lambda seed: foreign.gusts("hv.outer", 500.0, seed),
+        "heater at clamp": lambda seed: foreign.hot_spell("clamp", 120.0),
+    },
+    absorbed={
+        "link.tie": lambda seed: Change({"tie": 0.25}),
+        "chimney": lambda seed: Change({"chimney": 0.45}),
+        "loss.iron": lambda seed: Change({"iron": 2.0}),
+    },
+    tense={"tie": 0.25, "chimney": 0.15, "still": 0.12, "blown": 0.15, "iron": 0.12, "corners": 0.2, "slit": 0.25},
+    parts={**{node: body for body, node in CALLED.items()}, "yoke": "yoke", "clamp": "clamp", "limbs": "limb.outer"},
+    passing=(
+        Hidden("draught@hv.outer", lambda a: draught("hv.outer", a), 20.0),
+        Hidden("lamp@clamp", lambda a: heating("clamp", a), 200.0),
+        Hidden("cover@hv.outer", lambda a: covered(("face.outer",), a), 0.9),
+        Hidden("stage slower@ducts", lambda a: less("stage1_on", a), 1.5),
+        Hidden("meter@current_A", lambda a: less("current_A", -a), 0.3, least=METER),
+    ),
+    logger=Logger(60.0, 10.0, 0.1, (15.0, 60.0), 0.1),
+    called=CALLED,
+    words={
+        "draught@hv.outer": ("convection.constant@HV outer",),
+        "cable@lv.outer": ("conduction.cable@LV outer", "convection.constant@LV outer"),
+        "lamp@clamp": ("loss.constant@clamp",),
+        "harmonics@hv.mid": ("loss.winding@HV middle",),
+        "harmonics@lv.outer": ("loss.winding@LV outer",),
+        "bridge@clamp-lv.outer": ("coupling@clamp|LV outer", "coupling@LV outer|clamp"),
+        "dust@hv.outer": ("fouling@HV outer",),
+        "no tempco@lv": ("copper.feedback@low",),
+        "cover@hv.outer": ("blockage@HV outer",),
+        "stage slower@ducts": ("input.factor@stage1_on",),
+        "meter@current_A": ("input.factor@current_A",),
+    },
 )
