@@ -5,6 +5,9 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from hidden.truth.body import Skeleton
+from hidden.truth.machine import Film, Inputs
+
 Array = NDArray[np.float64]
 G0, SIGMA, ZERO = 9.81, 5.670374e-8, 273.15
 
@@ -57,6 +60,17 @@ def gap(T: Array, rpm: float, r: float, g: float) -> Array:
     Ta = np.abs(rpm) * np.pi / 30.0 * np.sqrt(r) * g**1.5 / nu
     Nu = (2.0**8 + (0.212 * Ta**0.63 * Pr**0.27) ** 8) ** (1 / 8)
     return np.asarray(Nu * k / (2.0 * g))
+
+
+def across_gap(s: Skeleton, rotor: str, stator: str, area: float, r: float, g: float) -> Film:
+    """The gap's film between the cells of two bodies that face each other; its area (m2) in all."""
+    inner, outer = s.cells(rotor), s.cells(stator)
+    n = min(inner.size, outer.size)
+
+    def h(T: Array, Ta: Array, u: Inputs) -> Array:
+        return gap(0.5 * (T + Ta), u["speed_rpm"], r, g)
+
+    return Film("gap", inner[:n], outer[:n], np.full(n, area / n), h)
 
 
 def stirred(rpm: float, r: float, k1: float, k2: float) -> float:

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
 from numpy.typing import NDArray
 
@@ -13,36 +11,18 @@ from hidden.truth.body import Body, Joint, Skeleton, skeleton
 from hidden.truth.change import Change
 from hidden.truth.draw import Draw
 from hidden.truth.effects import METER, airflow, bridge, covered, draught, fading, heating, less, stirred_gap
-from hidden.truth.films import cylinder_still, gap, plate_still, radiation
-from hidden.truth.losses import ALPHA, bertotti, friction
-from hidden.truth.machine import Film, Inputs, Loss, Machine
-from hidden.truth.profile import levels, steady, until
+from hidden.truth.films import across_gap, cylinder_still, plate_still, radiation
+from hidden.truth.losses import ALPHA, bearing, bertotti
+from hidden.truth.machine import Array, Film, Inputs, Loss, Machine, Stream
+from hidden.truth.profile import Rng, levels, steady, until
 
-Array = NDArray[np.float64]
-Rng = np.random.Generator
 RATED, BLOWN = 1000.0, 400.0
 COPPER, STEEL, IRON = -2e-4, -8e-4, -9e-4
 ENDS = (("de", 0.0), ("nde", 1.0))
 
 
-@dataclass(frozen=True)
-class Draught:
-    """Air through cells one after the other, `share` of the recorded m3/h, as dense as at the inlet."""
-
-    name: str
-    cells: NDArray[np.int64]
-    share: float
-
-    def into(self, q: Array, T: Array, u: Inputs) -> None:
-        mcp = self.share * u["fan_flow_m3h"] / 3600.0 * 352.98 / (u["T_ambient"] + 273.15) * 1006.0
-        before = np.concatenate([[u["T_ambient"]], T[self.cells[:-1]]])
-        q[self.cells] += mcp * (before - T[self.cells])
-
-
 def bodies(d: Draw) -> list[Body]:
-    def C(key: str, value: float) -> float:
-        return value * d.factor(f"capacity.{key}", 0.05)
-
+    C = d.capacity
     side = [
         b
         for end, _ in ENDS
@@ -67,9 +47,7 @@ def bodies(d: Draw) -> list[Body]:
 
 
 def joints(d: Draw) -> list[Joint]:
-    def G(key: str, value: float, sd: float) -> float:
-        return value * d.factor(key, sd)
-
+    G = d.conductance
     side = [
         j
         for end, x in ENDS
@@ -112,10 +90,7 @@ def films(s: Skeleton, d: Draw) -> list[Film]:
         out.append(Film(f"inner.{end}", inner, air[[cell]], np.full(inner.size, 0.07 / inner.size), blown(40.0)))
     g = 2e-3 / d.factor("gap", 0.15)
 
-    def film(T: Array, Ta: Array, u: Inputs) -> Array:
-        return gap(0.5 * (T + Ta), u["speed_rpm"], 0.1, g)
-
-    return [*out, *outside(s, d), Film("gap", s.cells("core"), s.cells("poles"), np.full(11, 0.1 / 11), film)]
+    return [*out, *outside(s, d), across_gap(s, "core", "poles", 0.1, 0.1, g)]
 
 
 def _along(s: Skeleton, body: str, air: NDArray[np.int64], area: float, h) -> Film:
@@ -165,18 +140,19 @@ def losses(s: Skeleton, d: Draw) -> list[Loss]:
     for end, _ in ENDS:
         P = 15.0 * d.factor(f"bearing.{end}", 0.25)
 
-        def grease(T: Array, u: Inputs, P: float = P) -> Array:
-            return friction(T, u["speed_rpm"] / RATED, P)
-
-        out.append(Loss(f"grease.{end}", s.cells(f"bearing.{end}"), np.full(2, 0.5), grease))
+        out.append(Loss(f"grease.{end}", s.cells(f"bearing.{end}"), np.full(2, 0.5), bearing(P, RATED)))
     return out
 
 
 def machine(d: Draw, change: Change) -> Machine:
     """The machine of one draw with what is hidden in it."""
     s = skeleton([*bodies(d), *change.bodies], [*joints(d), *change.joints])
-    draught = Draught("air", s.cells("air"), d.factor("flow", 0.03))
-    return Machine(s, (*films(s, d), draught, *losses(s, d), *change.terms(s)))
+    share = d.factor("flow", 0.03)  # of the recorded m3/h
+
+    def mcp(T: Array, u: Inputs) -> float:
+        return share * u["fan_flow_m3h"] / 3600.0 * 352.98 / (u["T_ambient"] + 273.15) * 1006.0
+
+    return Machine(s, (*films(s, d), Stream(s.cells("air"), "T_ambient", mcp), *losses(s, d), *change.terms(s)))
 
 
 def drive(current: Array, speed: Array, wind: Array, flow: Array) -> dict[str, Array]:

@@ -7,7 +7,6 @@ iron while it switches, at standstill as well.
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
 from hidden.truth import faults, foreign
 from hidden.truth.archetype import Archetype, Hidden, Plan, Spot
@@ -15,23 +14,19 @@ from hidden.truth.body import Body, Joint, Skeleton, skeleton
 from hidden.truth.change import Change
 from hidden.truth.draw import Draw
 from hidden.truth.effects import METER, covered, draught, heating, joined, less, spinning, switched, warming
-from hidden.truth.films import gap, plate_still, radiation
-from hidden.truth.losses import ALPHA, bertotti, copper, friction
-from hidden.truth.machine import Film, Inputs, Loss, Machine
-from hidden.truth.profile import levels, steady, until
+from hidden.truth.films import across_gap, plate_still, radiation
+from hidden.truth.losses import ALPHA, bearing, bertotti, copper
+from hidden.truth.machine import Array, Film, Inputs, Loss, Machine
+from hidden.truth.profile import Rng, levels, steady, until
 from hidden.truth.readings import Logger
 
-Array = NDArray[np.float64]
-Rng = np.random.Generator
 RATED, R1, R2, PULSES = 1500.0, 0.17, 0.11, 4000.0
 COPPER, STEEL, CAST = -2e-4, -8e-4, -5e-4
 ENDS = (("de", 0.0), ("fan", 0.999))
 
 
 def bodies(d: Draw) -> list[Body]:
-    def C(key: str, value: float) -> float:
-        return value * d.factor(f"capacity.{key}", 0.05)
-
+    C = d.capacity
     side = [
         b
         for end, _ in ENDS
@@ -55,9 +50,7 @@ def bodies(d: Draw) -> list[Body]:
 
 
 def joints(d: Draw) -> list[Joint]:
-    def G(key: str, value: float, sd: float = 0.25) -> float:
-        return value * d.factor(key, sd)
-
+    G = d.conductance
     side = [
         j
         for end, x in ENDS
@@ -115,8 +108,7 @@ def films(s: Skeleton, d: Draw) -> list[Film]:
     holes = Film(
         "holes", s.cells("air.de"), s.cells("air.fan"), np.ones(1), lambda T, Ta, u: 3.0 + 0.02 * u["speed_rpm"]
     )
-    across = lambda T, Ta, u: gap(0.5 * (T + Ta), u["speed_rpm"], 0.085, g)  # noqa: E731
-    return [*out, holes, Film("gap", s.cells("cage")[:6], s.cells("teeth"), np.full(6, 0.11 / 6), across)]
+    return [*out, holes, across_gap(s, "cage", "teeth", 0.11, 0.085, g)]
 
 
 def losses(s: Skeleton, d: Draw) -> list[Loss]:
@@ -152,9 +144,8 @@ def losses(s: Skeleton, d: Draw) -> list[Loss]:
     ]
     for end, _ in ENDS:
         P = 24.0 * d.factor(f"grease-{end}", 0.25)
-        grease = lambda T, u, P=P: friction(T, abs(u["speed_rpm"]) / RATED, P)  # noqa: E731
         out.append(Loss(f"head.{end}", s.cells(f"head.{end}"), np.full(4, 0.25 / 4), winding))
-        out.append(Loss(f"grease.{end}", s.cells(f"bearing.{end}"), np.full(2, 0.5), grease))
+        out.append(Loss(f"grease.{end}", s.cells(f"bearing.{end}"), np.full(2, 0.5), bearing(P, RATED)))
     return out
 
 

@@ -5,10 +5,9 @@ Bodies run from the hub (0) to the rim (1). Air enters at the hub and is thrown 
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
-from numpy.typing import NDArray
 
 from hidden.truth import faults, foreign
 from hidden.truth.archetype import Archetype, Hidden, Plan, Spot
@@ -17,36 +16,16 @@ from hidden.truth.change import Change
 from hidden.truth.draw import Draw
 from hidden.truth.effects import METER, airflow, blown, bridge, covered, draught, heating, less, spinning, warming
 from hidden.truth.films import air, plate_still, radiation
-from hidden.truth.losses import ALPHA
-from hidden.truth.machine import Film, Inputs, Loss, Machine
-from hidden.truth.profile import levels, steady, until
+from hidden.truth.losses import ALPHA, copper
+from hidden.truth.machine import Array, Film, Inputs, Loss, Machine, Stream
+from hidden.truth.profile import Rng, levels, steady, until
 from hidden.truth.readings import Logger
 
-Array = NDArray[np.float64]
-Rng = np.random.Generator
 R20, RIM, SIDES = 0.028, 0.14, ("left", "right")
 
 
-@dataclass(frozen=True)
-class Throughflow:
-    """Air through cells one after the other, what the blower and the discs' own pumping move (m3/s)."""
-
-    name: str
-    cells: NDArray[np.int64]
-    blower: float
-    pumping: float
-
-    def into(self, q: Array, T: Array, u: Inputs) -> None:
-        flow = 2e-3 + self.blower * u["blower_on"] + self.pumping * abs(u["speed_rpm"]) / 3000.0
-        mcp = flow * 352.98 / (u["T_ambient"] + 273.15) * 1006.0
-        before = np.concatenate([[u["T_ambient"]], T[self.cells[:-1]]])
-        q[self.cells] += mcp * (before - T[self.cells])
-
-
 def bodies(d: Draw) -> list[Body]:
-    def C(key: str, value: float) -> float:
-        return value * d.factor(f"capacity.{key}", 0.06)
-
+    C = partial(d.capacity, sd=0.06)
     side = [
         b
         for s in SIDES
@@ -67,9 +46,7 @@ def bodies(d: Draw) -> list[Body]:
 
 
 def joints(d: Draw) -> list[Joint]:
-    def G(key: str, value: float, sd: float = 0.25) -> float:
-        return value * d.factor(key, sd)
-
+    G = d.conductance
     side = [
         j
         for k, s in enumerate(SIDES)
@@ -123,7 +100,7 @@ def losses(s: Skeleton, d: Draw) -> list[Loss]:
     R, iron, eddy = R20 * d.factor("copper", 0.04), 130.0 * d.factor("iron", 0.15), 28.0 * d.factor("eddy", 0.2)
 
     def winding(T: Array, u: Inputs) -> Array:
-        return 3.0 * R * u["current_A"] ** 2 * (1.0 + ALPHA * (T - 20.0))
+        return copper(R, u["current_A"], T)
 
     def core(T: Array, u: Inputs) -> float:
         f = abs(u["speed_rpm"]) / 3000.0
@@ -155,7 +132,13 @@ def losses(s: Skeleton, d: Draw) -> list[Loss]:
 def machine(d: Draw, change: Change) -> Machine:
     s = skeleton([*bodies(d), *change.bodies], [*joints(d), *change.joints])
     blower, pumping = 0.016 * d.factor("blower", 0.1), 0.006 * d.factor("pumping", 0.2)
-    streams = tuple(Throughflow(f"air {side}", s.cells(f"air.{side}"), blower, pumping) for side in SIDES)
+
+    def mcp(T: Array, u: Inputs) -> float:
+        """Of what the blower and the discs' own pumping move."""
+        flow = 2e-3 + blower * u["blower_on"] + pumping * abs(u["speed_rpm"]) / 3000.0
+        return flow * 352.98 / (u["T_ambient"] + 273.15) * 1006.0
+
+    streams = tuple(Stream(s.cells(f"air.{side}"), "T_ambient", mcp) for side in SIDES)
     return Machine(s, (*films(s, d), *streams, *losses(s, d), *change.terms(s)))
 
 

@@ -16,14 +16,12 @@ from hidden.truth.body import Body, Joint, Skeleton, skeleton
 from hidden.truth.change import Change
 from hidden.truth.draw import Draw
 from hidden.truth.effects import METER, airflow, bridge, covered, draught, heating, less
-from hidden.truth.films import cylinder_still, gap, plate_still, radiation
-from hidden.truth.losses import bertotti, copper, friction
-from hidden.truth.machine import Film, Inputs, Loss, Machine
-from hidden.truth.profile import levels, steady, until
+from hidden.truth.films import across_gap, cylinder_still, plate_still, radiation
+from hidden.truth.losses import bearing, bertotti, copper
+from hidden.truth.machine import Array, Film, Inputs, Loss, Machine
+from hidden.truth.profile import Rng, levels, steady, until
 from hidden.truth.readings import Logger
 
-Array = NDArray[np.float64]
-Rng = np.random.Generator
 RATED, R20, LAYERS = 5000.0, 9e-3, (1, 2, 3, 4)
 COPPER, STEEL, ALUMINIUM = -2e-4, -8e-4, -1e-4
 SIDES = (
@@ -60,9 +58,7 @@ class OilLoop:
 
 
 def bodies(d: Draw) -> list[Body]:
-    def C(key: str, value: float) -> float:
-        return value * d.factor(f"capacity.{key}", 0.05)
-
+    C = d.capacity
     side = [
         b
         for end, cover, *_ in SIDES
@@ -87,9 +83,7 @@ def bodies(d: Draw) -> list[Body]:
 
 
 def joints(d: Draw) -> list[Joint]:
-    def G(key: str, value: float, sd: float = 0.25) -> float:
-        return value * d.factor(key, sd)
-
+    G = d.conductance
     walls = [Joint(f"wall-{m}", f"layer.{m}", "teeth", G("wall", 26.0, 0.2), slope=4e-4) for m in LAYERS]
     side = [
         j
@@ -135,13 +129,7 @@ def films(s: Skeleton, d: Draw) -> list[Film]:
     out = [
         Film("drum", s.cells("housing"), "T_ambient", np.full(8, 0.35 / 8), drum),
         Film("tank wall", s.cells("housing")[2:6], s.cells("tank"), np.full(4, 0.05 / 4), lambda T, To, u: 90.0 * wet),
-        Film(
-            "gap",
-            s.cells("magnets"),
-            s.cells("teeth"),
-            np.full(6, 0.09 / 6),
-            lambda T, Ta, u: gap(0.5 * (T + Ta), u["speed_rpm"], 0.08, g),
-        ),
+        across_gap(s, "magnets", "teeth", 0.09, 0.08, g),
     ]
     for end, cover, x, area in SIDES:
         oil, face = s.cells(f"oil.{end}"), s.cells(cover)
@@ -185,8 +173,7 @@ def losses(s: Skeleton, d: Draw) -> list[Loss]:
 
         out.append(Loss(f"layer.{m}", s.cells(f"layer.{m}"), np.full(6, 0.15 / 6), bars))
     for end, cover, x, _ in SIDES:
-        P = 30.0 * d.factor(f"grease-{end}", 0.25)
-        grease = lambda T, u, P=P: friction(T, abs(u["speed_rpm"]) / RATED, P, 0.004)  # noqa: E731
+        grease = bearing(30.0 * d.factor(f"grease-{end}", 0.25), RATED, 0.004)
         share = (0.53 if end == "weld" else 0.47) * 0.4
         out += [
             Loss(f"{end}", s.cells(end), np.full(5, share / 5), lambda T, u: copper(R, u["current_A"], T)),

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from functools import partial
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -12,19 +14,15 @@ from hidden.truth.change import Change
 from hidden.truth.draw import Draw
 from hidden.truth.effects import METER, bridge, covered, draught, heating, less, room_air, switched, to_room
 from hidden.truth.films import plate_still, radiation
-from hidden.truth.machine import Film, Loss, Machine
-from hidden.truth.profile import steady
+from hidden.truth.machine import Array, Film, Loss, Machine
+from hidden.truth.profile import Rng, steady
 from hidden.truth.readings import Logger
 
-Array = NDArray[np.float64]
-Rng = np.random.Generator
 WATTS, STIRRER = 90.0, 2.5
 
 
 def bodies(d: Draw) -> list[Body]:
-    def C(key: str, value: float) -> float:
-        return value * d.factor(f"capacity.{key}", 0.07)
-
+    C = partial(d.capacity, sd=0.07)
     return [
         Body("plate", C("plate", 420.0), 4, 0.15),
         Body("air", 45.0, 3, 1e4),

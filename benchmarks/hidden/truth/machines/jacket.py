@@ -2,10 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
-from numpy.typing import NDArray
 
 from hidden.truth import faults, foreign
 from hidden.truth.archetype import Archetype, Hidden, Plan, Spot
@@ -13,37 +10,18 @@ from hidden.truth.body import Body, Joint, Skeleton, skeleton
 from hidden.truth.change import Change
 from hidden.truth.draw import Draw
 from hidden.truth.effects import METER, airflow, covered, draught, heating, less, stirred_gap
-from hidden.truth.films import channel, cylinder_still, gap, plate_still, radiation, stirred
-from hidden.truth.losses import bertotti, copper, friction
-from hidden.truth.machine import Film, Inputs, Loss, Machine
-from hidden.truth.profile import levels, steady, until
+from hidden.truth.films import across_gap, channel, cylinder_still, plate_still, radiation, stirred
+from hidden.truth.losses import bearing, bertotti, copper
+from hidden.truth.machine import Array, Film, Inputs, Loss, Machine, Stream
+from hidden.truth.profile import Rng, levels, steady, until
 
-Array = NDArray[np.float64]
-Rng = np.random.Generator
 RATED = 4000.0
 COPPER, STEEL, ALUMINIUM = -2e-4, -8e-4, -1e-4
 ENDS = (("de", 0.0), ("nde", 1.0))
 
 
-@dataclass(frozen=True)
-class Stream:
-    """Water through cells one after the other; its heat capacity flow (W/K) is that of the recorded litres per minute
-    times `share`."""
-
-    name: str
-    cells: NDArray[np.int64]
-    share: float
-
-    def into(self, q: Array, T: Array, u: Inputs) -> None:
-        mcp = self.share * u["flow_l_min"] / 60000.0 * 1055.0 * 3380.0
-        before = np.concatenate([[u["T_coolant"]], T[self.cells[:-1]]])
-        q[self.cells] += mcp * (before - T[self.cells])
-
-
 def bodies(d: Draw) -> list[Body]:
-    def C(key: str, value: float) -> float:
-        return value * d.factor(f"capacity.{key}", 0.05)
-
+    C = d.capacity
     side = [
         b
         for end, _ in ENDS
@@ -70,9 +48,7 @@ def bodies(d: Draw) -> list[Body]:
 
 
 def joints(d: Draw) -> list[Joint]:
-    def G(key: str, value: float, sd: float) -> float:
-        return value * d.factor(key, sd)
-
+    G = d.conductance
     side = [
         j
         for end, x in ENDS
@@ -139,10 +115,7 @@ def inside(s: Skeleton, d: Draw) -> list[Film]:
         out += [Film(f"end.{end}.{k}", w, air, np.full(w.size, A / w.size), h) for k, (w, A) in enumerate(walls)]
     g = 0.8e-3 / d.factor("gap", 0.15)
 
-    def film(T: Array, Ta: Array, u: Inputs) -> Array:
-        return gap(0.5 * (T + Ta), u["speed_rpm"], 0.075, g)
-
-    return [*out, Film("gap", s.cells("magnets"), s.cells("teeth"), np.full(11, 0.09 / 11), film)]
+    return [*out, across_gap(s, "magnets", "teeth", 0.09, 0.075, g)]
 
 
 def losses(s: Skeleton, d: Draw) -> list[Loss]:
@@ -170,18 +143,16 @@ def losses(s: Skeleton, d: Draw) -> list[Loss]:
     for end, _ in ENDS:
         P = 22.0 * d.factor(f"bearing.{end}", 0.25)
 
-        def grease(T: Array, u: Inputs, P: float = P) -> Array:
-            return friction(T, u["speed_rpm"] / RATED, P, 0.004)
-
         out.append(Loss(f"end.{end}", s.cells(f"winding.{end}"), np.full(5, 0.25 / 5), winding))
-        out.append(Loss(f"grease.{end}", s.cells(f"bearing.{end}"), np.full(2, 0.5), grease))
+        out.append(Loss(f"grease.{end}", s.cells(f"bearing.{end}"), np.full(2, 0.5), bearing(P, RATED, 0.004)))
     return out
 
 
 def machine(d: Draw, change: Change) -> Machine:
     """The machine of one draw with what is hidden in it."""
     s = skeleton([*bodies(d), *change.bodies], [*joints(d), *change.joints])
-    water = Stream("water", s.cells("water"), d.factor("flow", 0.03))
+    share = d.factor("flow", 0.03)  # of the recorded litres per minute
+    water = Stream(s.cells("water"), "T_coolant", lambda T, u: share * u["flow_l_min"] / 60000.0 * 1055.0 * 3380.0)
     return Machine(s, (*films(s, d), water, *losses(s, d), *change.terms(s)))
 
 

@@ -6,7 +6,6 @@ Position 0 is the drive end, 1 the fan's. The shaft is one body from coupling to
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
 from hidden.truth import faults, foreign
 from hidden.truth.archetype import Archetype, Hidden, Plan, Spot
@@ -14,23 +13,19 @@ from hidden.truth.body import Body, Joint, Skeleton, skeleton
 from hidden.truth.change import Change
 from hidden.truth.draw import Draw
 from hidden.truth.effects import METER, airflow, covered, draught, heating, joined, less, spinning, switched, warming
-from hidden.truth.films import gap, plate_still, radiation
-from hidden.truth.losses import ALPHA
-from hidden.truth.machine import Film, Inputs, Loss, Machine
-from hidden.truth.profile import levels, steady, until
+from hidden.truth.films import across_gap, plate_still, radiation
+from hidden.truth.losses import ALPHA, copper
+from hidden.truth.machine import Array, Film, Inputs, Loss, Machine
+from hidden.truth.profile import Rng, levels, steady, until
 from hidden.truth.readings import Logger
 
-Array = NDArray[np.float64]
-Rng = np.random.Generator
 RATED, R20 = 1480.0, 0.062
 COPPER, STEEL, CAST = -2e-4, -8e-4, -5e-4
 ENDS = (("de", 0.0, 0.12, 1.0), ("nde", 1.0, 0.88, 0.8))  # name, place on frame and rotor, on the shaft; openness
 
 
 def bodies(d: Draw) -> list[Body]:
-    def C(key: str, value: float) -> float:
-        return value * d.factor(f"capacity.{key}", 0.05)
-
+    C = d.capacity
     side = [
         b
         for end, *_ in ENDS
@@ -55,9 +50,7 @@ def bodies(d: Draw) -> list[Body]:
 
 
 def joints(d: Draw) -> list[Joint]:
-    def G(key: str, value: float, sd: float = 0.25) -> float:
-        return value * d.factor(key, sd)
-
+    G = d.conductance
     side = [
         j
         for end, x, on, _ in ENDS
@@ -125,10 +118,7 @@ def inside(s: Skeleton, d: Draw) -> list[Film]:
         air = s.cells(f"air.{end}")
         out += [Film(f"space.{end}.{k}", w, air, np.full(w.size, A / w.size), h) for k, (w, A) in enumerate(walls)]
 
-    def film(T: Array, Ta: Array, u: Inputs) -> Array:
-        return gap(0.5 * (T + Ta), u["speed_rpm"], 0.1, g)
-
-    return [*out, Film("gap", s.cells("rotor"), s.cells("teeth"), np.full(6, 0.14 / 6), film)]
+    return [*out, across_gap(s, "rotor", "teeth", 0.14, 0.1, g)]
 
 
 def losses(s: Skeleton, d: Draw) -> list[Loss]:
@@ -136,7 +126,7 @@ def losses(s: Skeleton, d: Draw) -> list[Loss]:
     kh, ke = 330.0 * d.factor("iron", 0.15), 260.0 * d.factor("eddy", 0.2)
 
     def winding(T: Array, u: Inputs) -> Array:
-        return 3.0 * R * u["current_A"] ** 2 * (1.0 + ALPHA * (T - 20.0))
+        return copper(R, u["current_A"], T)
 
     def iron(T: Array, u: Inputs) -> Array:
         f = abs(u["speed_rpm"]) / RATED

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+from functools import partial
+
 import numpy as np
-from numpy.typing import NDArray
 
 from hidden.truth import faults, foreign
 from hidden.truth.archetype import Archetype, Hidden, Plan, Spot
@@ -11,21 +12,17 @@ from hidden.truth.body import Body, Joint, Skeleton, skeleton
 from hidden.truth.change import Change
 from hidden.truth.draw import Draw
 from hidden.truth.effects import METER, covered, draught, heating, joined, less, spinning, switched, warming
-from hidden.truth.films import cylinder_still, gap, plate_still, radiation
-from hidden.truth.losses import ALPHA
-from hidden.truth.machine import Film, Loss, Machine
-from hidden.truth.profile import levels, steady, until
+from hidden.truth.films import across_gap, cylinder_still, plate_still, radiation
+from hidden.truth.losses import ALPHA, copper
+from hidden.truth.machine import Array, Film, Loss, Machine
+from hidden.truth.profile import Rng, levels, steady, until
 from hidden.truth.readings import Logger
 
-Array = NDArray[np.float64]
-Rng = np.random.Generator
 R20, ALUMINIUM = 0.19, -1e-4  # ohm per phase, three of them
 
 
 def bodies(d: Draw) -> list[Body]:
-    def C(key: str, value: float) -> float:
-        return value * d.factor(f"capacity.{key}", 0.06)
-
+    C = partial(d.capacity, sd=0.06)
     return [
         Body("copper", C("copper", 42.0), 5, 3.0, -2e-4),
         Body("teeth", C("iron", 120.0), 5, 9.0, -8e-4),
@@ -56,14 +53,11 @@ def films(s: Skeleton, d: Draw) -> list[Film]:
     def plate(T: Array, Ta: Array, u) -> Array:
         return still * plate_still(T, Ta, 0.12) + radiation(T, Ta, 0.1)
 
-    def air(T: Array, Ta: Array, u) -> Array:
-        return gap(0.5 * (T + Ta), u["speed_rpm"], 0.014, g)
-
     return [
         Film("box", s.cells("case"), "T_ambient", np.full(6, 0.013 / 6), box),
         Film("lid", s.cells("lid"), "T_ambient", np.full(2, 0.0015), box),
         Film("plate", s.cells("bracket"), "T_ambient", np.full(5, 0.012 / 5), plate),
-        Film("gap", s.cells("rotor"), s.cells("teeth")[:4], np.full(4, 0.0045 / 4), air),
+        across_gap(s, "rotor", "teeth", 0.0045, 0.014, g),
     ]
 
 
@@ -71,7 +65,7 @@ def losses(s: Skeleton, d: Draw) -> list[Loss]:
     R, iron, grease = R20 * d.factor("copper", 0.04), 2.4 * d.factor("iron", 0.2), 0.8 * d.factor("grease", 0.3)
 
     def winding(T: Array, u) -> Array:
-        return 3.0 * R * u["current_A"] ** 2 * (1.0 + ALPHA * (T - 20.0))
+        return copper(R, u["current_A"], T)
 
     def core(T: Array, u) -> float:
         f = u["speed_rpm"] / 3000.0

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
 from hidden.truth import faults, foreign
 from hidden.truth.archetype import Archetype, Hidden, Plan, Spot
@@ -11,22 +10,18 @@ from hidden.truth.body import Body, Joint, Skeleton, skeleton
 from hidden.truth.change import Change
 from hidden.truth.draw import Draw
 from hidden.truth.effects import METER, airflow, bridge, covered, draught, fading, heating, less, spinning, stirred_gap
-from hidden.truth.films import cylinder_still, gap, mixed, plate_still, radiation, stirred
-from hidden.truth.losses import bertotti, copper, friction
-from hidden.truth.machine import Film, Loss, Machine
-from hidden.truth.profile import levels, steady, until
+from hidden.truth.films import across_gap, cylinder_still, mixed, plate_still, radiation, stirred
+from hidden.truth.losses import bearing, bertotti, copper
+from hidden.truth.machine import Array, Film, Loss, Machine
+from hidden.truth.profile import Rng, levels, steady, until
 
-Array = NDArray[np.float64]
-Rng = np.random.Generator
 RATED = 1500.0
 COPPER, STEEL, ALUMINIUM = -2e-4, -8e-4, -1e-4
 ENDS = (("de", 0.0), ("nde", 1.0))
 
 
 def bodies(d: Draw) -> list[Body]:
-    def C(key: str, value: float) -> float:
-        return value * d.factor(f"capacity.{key}", 0.05)
-
+    C = d.capacity
     side = [
         b
         for end, _ in ENDS
@@ -51,9 +46,7 @@ def bodies(d: Draw) -> list[Body]:
 
 
 def joints(d: Draw) -> list[Joint]:
-    def G(key: str, value: float, sd: float) -> float:
-        return value * d.factor(key, sd)
-
+    G = d.conductance
     side = [
         j
         for end, x in ENDS
@@ -125,10 +118,7 @@ def inside(s: Skeleton, d: Draw) -> list[Film]:
         out += [Film(f"end.{end}.{k}", w, air, np.full(w.size, A / w.size), h) for k, (w, A) in enumerate(walls)]
     g = 0.5e-3 / d.factor("gap", 0.15)
 
-    def film(T: Array, Ta: Array, u) -> Array:
-        return gap(0.5 * (T + Ta), u["speed_rpm"], 0.06, g)
-
-    return [*out, Film("gap", s.cells("rotor"), s.cells("teeth"), np.full(11, 0.068 / 11), film)]
+    return [*out, across_gap(s, "rotor", "teeth", 0.068, 0.06, g)]
 
 
 def losses(s: Skeleton, d: Draw) -> list[Loss]:
@@ -150,11 +140,8 @@ def losses(s: Skeleton, d: Draw) -> list[Loss]:
     for end, _ in ENDS:
         P = 14.0 * d.factor(f"bearing.{end}", 0.25)
 
-        def grease(T: Array, u, P: float = P) -> Array:
-            return friction(T, u["speed_rpm"] / RATED, P)
-
         out.append(Loss(f"end.{end}", s.cells(f"winding.{end}"), np.full(5, 0.275 / 5), winding))
-        out.append(Loss(f"grease.{end}", s.cells(f"bearing.{end}"), np.full(2, 0.5), grease))
+        out.append(Loss(f"grease.{end}", s.cells(f"bearing.{end}"), np.full(2, 0.5), bearing(P, RATED)))
     return out
 
 

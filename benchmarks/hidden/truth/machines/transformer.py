@@ -5,10 +5,9 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
-from numpy.typing import NDArray
 
 from hidden.truth import faults, foreign
 from hidden.truth.archetype import Archetype, Hidden, Plan, Spot
@@ -18,37 +17,16 @@ from hidden.truth.draw import Draw
 from hidden.truth.effects import METER, bridge, covered, draught, fading, heating, less, warming
 from hidden.truth.films import plate_still, radiation
 from hidden.truth.losses import ALPHA
-from hidden.truth.machine import Film, Inputs, Loss, Machine
-from hidden.truth.profile import levels, steady
+from hidden.truth.machine import Array, Film, Inputs, Loss, Machine, Stream
+from hidden.truth.profile import Rng, levels, steady
 from hidden.truth.readings import Logger
 
-Array = NDArray[np.float64]
-Rng = np.random.Generator
 R_LV, R_HV = 0.030, 0.034  # ohm per phase, both seen from the low-voltage side
 COILS = (("mid", 1.0), ("outer", 2.0))  # limbs that each stands for
 
 
-@dataclass(frozen=True)
-class Chimney:
-    """Air through the cells of a duct: as much as warm air draws (root of the rise), and what both fans blow (W/K)."""
-
-    name: str
-    cells: NDArray[np.int64]
-    draws: float
-    blows: tuple[float, float]
-
-    def into(self, q: Array, T: Array, u: Inputs) -> None:
-        rise = float(T[self.cells].mean()) - u["T_ambient"]
-        mcp = self.draws * max(rise + 1.0, 0.1) ** 0.5
-        mcp += self.blows[0] * u["stage1_on"] + self.blows[1] * u["stage2_on"]
-        before = np.concatenate([[u["T_ambient"]], T[self.cells[:-1]]])
-        q[self.cells] += mcp * (before - T[self.cells])
-
-
 def bodies(d: Draw) -> list[Body]:
-    def C(key: str, value: float) -> float:
-        return value * d.factor(f"capacity.{key}", 0.06)
-
+    C = partial(d.capacity, sd=0.06)
     coils = [
         b
         for at, n in COILS
@@ -139,10 +117,17 @@ def losses(s: Skeleton, d: Draw) -> list[Loss]:
 def machine(d: Draw, change: Change) -> Machine:
     s = skeleton([*bodies(d), *change.bodies], [*joints(d), *change.joints])
     draws, blows = d.factor("chimney", 0.15), d.factor("blown", 0.15)
-    air = [
-        Chimney(f"duct.{a}", s.cells(f"duct.{a}"), 1.0 * n * draws, (9.0 * n * blows, 6.5 * n * blows))
-        for a, n in COILS
-    ]
+
+    def rising(n: float):
+        """As much air as warm air draws (root of the rise), and what both fans blow."""
+
+        def mcp(T: Array, u: Inputs) -> float:
+            drawn = n * draws * max(float(T.mean()) - u["T_ambient"] + 1.0, 0.1) ** 0.5
+            return drawn + (9.0 * n * blows * u["stage1_on"] + 6.5 * n * blows * u["stage2_on"])
+
+        return mcp
+
+    air = [Stream(s.cells(f"duct.{a}"), "T_ambient", rising(n)) for a, n in COILS]
     return Machine(s, (*films(s, d), *air, *losses(s, d), *change.terms(s)))
 
 
