@@ -26,7 +26,7 @@ from lumped.model.build import bare_network, node_link, node_source
 from lumped.model.network import Network, Parameter
 from lumped.transfer.laws import Fixed, InputPower, Linear, Power
 from measured.case import Case, Channel, Model, Test
-from scripts.published import write_rows
+from scripts.published import measured_row as row, write_rows
 from thermoscope.case_folder.folder import load_case
 from validation import diagnose
 from validation.comparison.linearisation import segments
@@ -150,11 +150,11 @@ def rows(samples: int) -> list[dict[str, Any]]:
     chosen = kinds(now)
     diagnose(now, chosen)  # compile
     _, wall, cpu = timed(lambda: diagnose(now, chosen))
-    out += [row(name, "wall time", "s", wall, LIMIT_S), row(name, "CPU time", "s", cpu, 2 * LIMIT_S)]
+    out += [row(name, "wall time", "s", wall, LIMIT_S, "limit"), row(name, "CPU time", "s", cpu, 2 * LIMIT_S, "limit")]
     net = motor()
     sizes = {n: peak(Case("long", Model(net), (recorded(net, "long", n, 1.0),))) for n in (samples // 4, samples)}
     measure = f"memory over a quarter's {sizes[samples // 4]:.0f} MB"
-    out.append(row(f"{samples} samples", measure, "1", sizes[samples] / sizes[samples // 4], MORE))
+    out.append(row(f"{samples} samples", measure, "1", sizes[samples] / sizes[samples // 4], MORE, "limit"))
     return out
 
 
@@ -165,20 +165,8 @@ def rows_of(folder: Path) -> list[dict[str, Any]]:
     for what, limit, chosen in (("whole catalogue", WHOLE_S, None), (f"{CANDIDATES} candidates", LIMIT_S, few)):
         _, wall, cpu = timed(lambda chosen=chosen: diagnose(now, chosen, plan=False))
         name = f"{now.name}, {what}"
-        out += [row(name, "wall time", "s", wall, limit), row(name, "CPU time", "s", cpu, 2 * limit)]
+        out += [row(name, "wall time", "s", wall, limit, "limit"), row(name, "CPU time", "s", cpu, 2 * limit, "limit")]
     return out
-
-
-def row(name: str, measure: str, unit: str, ours: float, limit: float) -> dict[str, Any]:
-    return {
-        "case": name,
-        "measure": measure,
-        "unit": unit,
-        "ours": ours,
-        "peer": limit,
-        "peer_name": "limit",
-        "ratio": ours / limit,
-    }
 
 
 def main() -> None:

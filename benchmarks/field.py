@@ -32,7 +32,7 @@ from fem.solvers.transient import transient
 from geom import build_mesh, load_machine
 from lumped.build.pipeline import field_of
 from lumped.machine.motor import nominal_coefficients
-from scripts.published import write_rows
+from scripts.published import measured_row as row, write_rows
 
 SIZES = {"50k": 36, "300k": 66}
 LARGE = {"1M": 99}
@@ -126,14 +126,6 @@ def motor_rows() -> list[dict[str, Any]]:
     )
     rows.append(row(case, "an hour in 60 s steps", "s", time.process_time() - start))
     return [*rows, row(case, "hottest after the hour", "degC", float(T[-1].max()))]
-
-
-def row(
-    case: str, measure: str, unit: str, ours: float, peer: float | None = None, name: str | None = None
-) -> dict[str, Any]:
-    """One line of the table; ratio is ours over the peer's."""
-    out = {"case": case, "measure": measure, "unit": unit, "ours": ours, "peer": peer, "peer_name": name}
-    return {**out, "ratio": ours / peer if peer else None, "n": None, "ci95": None}
 
 
 def shown(rows: list[dict[str, Any]]) -> list[dict[str, Any]]:

@@ -33,7 +33,7 @@ from geom import (
 from geom.machine_file import machine_from
 from geom.meshing.mesher import _planned
 from geom.solids.cad import solids
-from scripts.published import write_rows
+from scripts.published import measured_row as row, write_rows
 
 SETTINGS: dict[str, dict[str, Any]] = {
     "coarse": COARSE,
@@ -123,11 +123,6 @@ def library_rows() -> list[dict[str, Any]]:
         rows += [row(name, "volume error", "1", volume_error(machine, mesh))]
         rows += [row(name, "least quality", "1", min(mesh_quality(mesh).values()))]
     return rows
-
-
-def row(case: str, measure: str, unit: str, ours: float) -> dict[str, Any]:
-    empty = {"peer": None, "peer_name": None, "ratio": None, "n": None, "ci95": None}
-    return {"case": case, "measure": measure, "unit": unit, "ours": ours, **empty}
 
 
 def main() -> None:

@@ -80,7 +80,7 @@ def main() -> None:
             "\n\n".join(
                 [
                     markdown(table),
-                    "\n".join(diagram(reliability(pairs(out)))),
+                    diagram(reliability(pairs(out))),
                     "\n".join(temper.markdown(temper.folds(pairs(out)))),
                     "\n".join(temper.sharpness_folds(pairs(out))),
                 ]

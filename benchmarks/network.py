@@ -28,7 +28,7 @@ from lumped.integration.simulate import Record, simulate
 from lumped.model.build import bare_network, node_link, node_source
 from lumped.model.network import Network, Parameter
 from lumped.transfer.laws import Fixed, InputPower, Linear, Power, Radiation
-from scripts.published import write_rows
+from scripts.published import measured_row as row, write_rows
 
 MEMBERS = 1000
 
@@ -177,12 +177,6 @@ def compiling() -> list[dict[str, Any]]:
             out.append(row(f"first run, {state}", "time", "s", plain))
             out.append(row(f"first sensitivities, {state}", "time", "s", tangent))
     return out
-
-
-def row(case: str, measure: str, unit: str, ours: float, peer: float | None = None, name: str = "") -> dict[str, Any]:
-    """One line of the table; ratio is ours over the peer's."""
-    found = {"peer": peer, "peer_name": name or None, "ratio": ours / peer if peer else None}
-    return {"case": case, "measure": measure, "unit": unit, "ours": ours, **found, "n": None, "ci95": None}
 
 
 def shown(r: dict[str, Any], to: TextIO) -> None:

@@ -28,7 +28,7 @@ import numpy as np
 
 from geom.errors import ThermoscopeError
 from measured.case import Case
-from scripts.published import publish
+from scripts.published import publish, table
 from thermoscope.case_folder.folder import find_case, load_case
 from validation.comparison.compare import Comparison, pooled
 from validation.revision.improvement import MOST, Improvement, Supervisor, improve, singletons
@@ -225,14 +225,14 @@ def cpu_s() -> float:
     return sum(u.ru_utime + u.ru_stime for u in both)
 
 
-def table(rows: Sequence[Row]) -> str:
+def recordings_table(rows: Sequence[Row]) -> str:
     """As Markdown: what ran first, then why others did not."""
-    lines = [f"| {' | '.join(HEAD)} |", f"|{'---|' * len(HEAD)}"]
+    cells = []
     for r in (r for r in rows if not r.fault):
         words = {name: f"{value:.2f}" for name, value in r.yardsticks.items()}
         added = [name for name, _ in r.steps if name not in ("start", "calibrate")]
         start = f"{r.steps[0][1]:.2f}" if r.published else ""
-        cells = [
+        row = [
             r.name,
             f"{r.tests} ({r.kept})",
             *(words[k] for k in KINDS),
@@ -244,7 +244,8 @@ def table(rows: Sequence[Row]) -> str:
             ", ".join(added).replace("|", "\\|") or "nothing",
             f"{r.cpu_s:.0f}",
         ]
-        lines.append(f"| {' | '.join(cells)} |")
+        cells.append(row)
+    lines = [table(HEAD, cells)]
     ratios = np.array([r.ratios for r in rows if np.isfinite(r.ratios).all()])
     if ratios.size:
         middle, worst = (" / ".join(f"{x:.2f}" for x in of(ratios, axis=0)) for of in (np.median, np.max))
@@ -266,7 +267,7 @@ def main() -> None:
             Row(**{k: v for k, v in r.items() if k != "ratios"}) for r in json.loads(options.page.read_text())["rows"]
         ]
         for page in PAGES:
-            publish(page, "recordings", table(rows))
+            publish(page, "recordings", recordings_table(rows))
         return
     scratch = Path(tempfile.mkdtemp())
     try:
@@ -280,7 +281,7 @@ def main() -> None:
             if options.json:
                 document = {"rows": [{**asdict(r), "ratios": r.ratios} for r in rows]}
                 options.json.write_text(json.dumps(document, indent=1), encoding="utf-8")
-        print(table(rows))
+        print(recordings_table(rows))
     finally:
         shutil.rmtree(scratch)
 

@@ -30,7 +30,7 @@ sys.path = [p for p in sys.path if Path(p).resolve() != Path(__file__).resolve()
 from geom import NamedMesh, build_mesh, load_machine
 from lumped.model.network import Row
 from measured.case import Channel, Test
-from scripts.published import write_rows
+from scripts.published import measured_row as row, write_rows
 from viz import split, write_recording
 from viz.colours import LIGHT
 from viz.data import Comparison
@@ -145,12 +145,6 @@ def click(nodes: SplitMesh) -> list[dict[str, Any]]:
     walls, cpus, _ = zip(*(timed(lambda n=n: clicked(f"T{n}")) for n in range(2, 9)), strict=True)
     case = "workbench, click to curve, server side"
     return [row(case, "time", "s", float(np.median(walls))), row(case, "time, CPU", "s", float(np.median(cpus)))]
-
-
-def row(case: str, measure: str, unit: str, ours: float, peer: float | None = None, name: str = "") -> dict[str, Any]:
-    """One line of the table; ratio is ours over the peer's."""
-    out = {"case": case, "measure": measure, "unit": unit, "ours": ours}
-    return {**out, "peer": peer, "peer_name": name, "ratio": ours / peer if peer else None}
 
 
 def main() -> None:

@@ -5,8 +5,6 @@ Bodies run from the hub (0) to the rim (1). Air enters at the hub and is thrown 
 
 from __future__ import annotations
 
-from functools import partial
-
 import numpy as np
 
 from hidden.truth import faults, foreign
@@ -25,7 +23,9 @@ R20, RIM, SIDES = 0.028, 0.14, ("left", "right")
 
 
 def bodies(d: Draw) -> list[Body]:
-    C = partial(d.capacity, sd=0.06)
+    def C(key: str, value: float) -> float:
+        return d.capacity(key, value, 0.06)
+
     side = [
         b
         for s in SIDES

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from functools import partial
-
 import numpy as np
 from numpy.typing import NDArray
 
@@ -22,7 +20,9 @@ WATTS, STIRRER = 90.0, 2.5
 
 
 def bodies(d: Draw) -> list[Body]:
-    C = partial(d.capacity, sd=0.07)
+    def C(key: str, value: float) -> float:
+        return d.capacity(key, value, 0.07)
+
     return [
         Body("plate", C("plate", 420.0), 4, 0.15),
         Body("air", 45.0, 3, 1e4),

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from functools import partial
-
 import numpy as np
 
 from hidden.truth import faults, foreign
@@ -22,7 +20,9 @@ R20, ALUMINIUM = 0.19, -1e-4  # ohm per phase, three of them
 
 
 def bodies(d: Draw) -> list[Body]:
-    C = partial(d.capacity, sd=0.06)
+    def C(key: str, value: float) -> float:
+        return d.capacity(key, value, 0.06)
+
     return [
         Body("copper", C("copper", 42.0), 5, 3.0, -2e-4),
         Body("teeth", C("iron", 120.0), 5, 9.0, -8e-4),

@@ -5,8 +5,6 @@
 
 from __future__ import annotations
 
-from functools import partial
-
 import numpy as np
 
 from hidden.truth import faults, foreign
@@ -26,7 +24,9 @@ COILS = (("mid", 1.0), ("outer", 2.0))  # limbs that each stands for
 
 
 def bodies(d: Draw) -> list[Body]:
-    C = partial(d.capacity, sd=0.06)
+    def C(key: str, value: float) -> float:
+        return d.capacity(key, value, 0.06)
+
     coils = [
         b
         for at, n in COILS
