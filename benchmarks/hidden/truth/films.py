@@ -23,19 +23,21 @@ def air(T: Array) -> tuple[Array, Array, Array, float]:
 
 
 def cylinder_still(T: Array, Ta: Array, D: float) -> Array:
-    """Horizontal cylinder in still air: Churchill and Chu 1975."""
-    k, nu, beta, Pr = air(0.5 * (T + Ta))
-    Ra = G0 * beta * np.abs(T - Ta) * D**3 / nu**2 * Pr
-    Nu = (0.60 + 0.387 * Ra ** (1 / 6) / (1.0 + (0.559 / Pr) ** (9 / 16)) ** (8 / 27)) ** 2
-    return Nu * k / D
+    """Horizontal cylinder in still air."""
+    return _churchill_chu(T, Ta, D, 0.60, 0.559)
 
 
 def plate_still(T: Array, Ta: Array, H: float) -> Array:
-    """Vertical plate in still air: Churchill and Chu 1975."""
+    """Vertical plate in still air."""
+    return _churchill_chu(T, Ta, H, 0.825, 0.492)
+
+
+def _churchill_chu(T: Array, Ta: Array, L: float, least: float, by_Pr: float) -> Array:
+    """Churchill and Chu 1975."""
     k, nu, beta, Pr = air(0.5 * (T + Ta))
-    Ra = G0 * beta * np.abs(T - Ta) * H**3 / nu**2 * Pr
-    Nu = (0.825 + 0.387 * Ra ** (1 / 6) / (1.0 + (0.492 / Pr) ** (9 / 16)) ** (8 / 27)) ** 2
-    return Nu * k / H
+    Ra = G0 * beta * np.abs(T - Ta) * L**3 / nu**2 * Pr
+    Nu = (least + 0.387 * Ra ** (1 / 6) / (1.0 + (by_Pr / Pr) ** (9 / 16)) ** (8 / 27)) ** 2
+    return Nu * k / L
 
 
 def wind(T: Array, Ta: Array, v: Array, L: float) -> Array:

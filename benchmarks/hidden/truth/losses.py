@@ -16,6 +16,11 @@ def copper(R20: float, current: float, T: Array) -> Array:
     return 3.0 * R20 * current**2 * (1.0 + ALPHA * (T - 20.0))
 
 
+def joule(R20: float, input_A: str = "current_A") -> Callable[[Array, Mapping[str, float]], Array]:
+    """Loss of a winding under one of the inputs."""
+    return lambda T, u: copper(R20, u[input_A], T)
+
+
 def bertotti(T: Array, f: float, hysteresis: float, eddy: float, excess: float) -> Array:
     """Bertotti 1988 at constant flux: hysteresis f + eddy f^2 + excess f^1.5, f relative to the rated; eddies fade as
     the steel warms (0.1 %/K)."""

@@ -7,13 +7,13 @@ from numpy.typing import NDArray
 
 from hidden.truth import faults, foreign
 from hidden.truth.archetype import Archetype, Hidden, Plan, Spot
-from hidden.truth.body import Body, Joint, Skeleton, skeleton
+from hidden.truth.body import Body, Joint, Skeleton
 from hidden.truth.change import Change
 from hidden.truth.draw import Draw
 from hidden.truth.effects import METER, airflow, bridge, covered, draught, fading, heating, less, stirred_gap
 from hidden.truth.films import across_gap, cylinder_still, plate_still, radiation
 from hidden.truth.losses import ALPHA, bearing, bertotti
-from hidden.truth.machine import Array, Film, Inputs, Loss, Machine, Stream
+from hidden.truth.machine import Array, Film, Inputs, Loss, Stream
 from hidden.truth.profile import Rng, levels, steady, until
 
 RATED, BLOWN = 1000.0, 400.0
@@ -144,15 +144,13 @@ def losses(s: Skeleton, d: Draw) -> list[Loss]:
     return out
 
 
-def machine(d: Draw, change: Change) -> Machine:
-    """The machine of one draw with what is hidden in it."""
-    s = skeleton([*bodies(d), *change.bodies], [*joints(d), *change.joints])
+def streams(s: Skeleton, d: Draw) -> list[Stream]:
     share = d.factor("flow", 0.03)  # of the recorded m3/h
 
     def mcp(T: Array, u: Inputs) -> float:
         return share * u["fan_flow_m3h"] / 3600.0 * 352.98 / (u["T_ambient"] + 273.15) * 1006.0
 
-    return Machine(s, (*films(s, d), Stream(s.cells("air"), "T_ambient", mcp), *losses(s, d), *change.terms(s)))
+    return [Stream(s.cells("air"), "T_ambient", mcp)]
 
 
 def drive(current: Array, speed: Array, wind: Array, flow: Array) -> dict[str, Array]:
@@ -181,7 +179,9 @@ def road(rng: Rng, at: Array) -> dict[str, Array]:
 
 BRUSHED = Archetype(
     name="brushed",
-    build=machine,
+    bodies=bodies,
+    joints=joints,
+    terms=(films, streams, losses),
     plans=(
         Plan("locked", "calibrate", 75.0, direct),
         Plan("load", "calibrate", 75.0, load),

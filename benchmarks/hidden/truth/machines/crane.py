@@ -9,14 +9,14 @@ from __future__ import annotations
 import numpy as np
 
 from hidden.truth import faults, foreign
-from hidden.truth.archetype import Archetype, Hidden, Plan, Spot
-from hidden.truth.body import Body, Joint, Skeleton, skeleton
+from hidden.truth.archetype import Archetype, Hidden, Plan, Spot, no_tempco
+from hidden.truth.body import Body, Joint, Skeleton
 from hidden.truth.change import Change
 from hidden.truth.draw import Draw
 from hidden.truth.effects import METER, covered, draught, heating, joined, less, spinning, switched, warming
 from hidden.truth.films import across_gap, plate_still, radiation
-from hidden.truth.losses import ALPHA, bearing, bertotti, copper
-from hidden.truth.machine import Array, Film, Inputs, Loss, Machine
+from hidden.truth.losses import ALPHA, bearing, bertotti, joule
+from hidden.truth.machine import Array, Film, Inputs, Loss
 from hidden.truth.profile import Rng, levels, steady, until
 from hidden.truth.readings import Logger
 
@@ -117,9 +117,6 @@ def losses(s: Skeleton, d: Draw) -> list[Loss]:
     kh, ke, kx = 150.0 * d.factor("iron", 0.15), 120.0 * d.factor("eddy", 0.2), 40.0 * d.factor("excess", 0.3)
     pulses, stray = 45.0 * d.factor("pulses", 0.25), 60.0 * d.factor("stray", 0.25)
 
-    def winding(T: Array, u: Inputs) -> Array:
-        return copper(R, u["current_A"], T)
-
     def iron(T: Array, u: Inputs) -> Array:
         f, B = abs(u["speed_rpm"]) / RATED, u["flux_percent"] / 100.0
         return bertotti(T, f, kh * B**1.8, ke * B**2, kx * B**1.5)
@@ -133,10 +130,10 @@ def losses(s: Skeleton, d: Draw) -> list[Loss]:
 
     rings = np.array([1.6, 1.0, 1.0, 1.0, 1.0, 1.0, 1.6])
     out = [
-        Loss("slot", s.cells("slot"), np.full(6, 0.5 / 6), winding),
+        Loss("slot", s.cells("slot"), np.full(6, 0.5 / 6), joule(R)),
         Loss("teeth", s.cells("teeth"), np.full(6, 0.5 / 6), iron),
         Loss("yoke", s.cells("yoke"), np.full(6, 0.5 / 6), iron),
-        Loss("bars", s.cells("cage"), rings / rings.sum(), lambda T, u: copper(bars, u["rotor_A"], T)),
+        Loss("bars", s.cells("cage"), rings / rings.sum(), joule(bars, "rotor_A")),
         Loss("stray", s.cells("cage"), np.full(7, 0.6 / 7), load),
         Loss("stray teeth", s.cells("teeth"), np.full(6, 0.4 / 6), load),
         Loss("pulses", s.cells("teeth"), np.full(6, 0.65 / 6), ripple),
@@ -144,14 +141,9 @@ def losses(s: Skeleton, d: Draw) -> list[Loss]:
     ]
     for end, _ in ENDS:
         P = 24.0 * d.factor(f"grease-{end}", 0.25)
-        out.append(Loss(f"head.{end}", s.cells(f"head.{end}"), np.full(4, 0.25 / 4), winding))
+        out.append(Loss(f"head.{end}", s.cells(f"head.{end}"), np.full(4, 0.25 / 4), joule(R)))
         out.append(Loss(f"grease.{end}", s.cells(f"bearing.{end}"), np.full(2, 0.5), bearing(P, RATED)))
     return out
-
-
-def machine(d: Draw, change: Change) -> Machine:
-    s = skeleton([*bodies(d), *change.bodies], [*joints(d), *change.joints])
-    return Machine(s, (*films(s, d), *losses(s, d), *change.terms(s)))
 
 
 def drive(current: Array, speed: Array, blower: Array) -> dict[str, Array]:
@@ -193,7 +185,9 @@ PARTS["rear bearing"] = "bearing.fan"
 
 CRANE = Archetype(
     name="crane",
-    build=machine,
+    bodies=bodies,
+    joints=joints,
+    terms=(films, losses),
     plans=(
         Plan("direct current", "calibrate", 100.0, direct),
         Plan("stand", "calibrate", 100.0, stand),
@@ -211,9 +205,7 @@ CRANE = Archetype(
         Hidden("ac copper@slot", lambda a: heating("slot", a, (2.0, 1.85), (2.0, 2.0), fade=0.002), 900.0),
         Hidden("load loss@cage", lambda a: heating("cage", a, (2.0, 1.8), (2.0, 2.0)), 900.0),
         Hidden("pulses@cage", lambda a: switched("cage", a / PULSES, "switching_Hz"), 300.0),
-        Hidden(
-            "no tempco@slot", lambda a: warming("slot", 3.0 * R1, a), ALPHA, ((("losses", "copper", "alpha_1_K"), 0.0),)
-        ),
+        Hidden("no tempco@slot", lambda a: warming("slot", 3.0 * R1, a), ALPHA, no_tempco("copper")),
     ),
     faults={
         "sensor.gain@core": lambda seed: faults.gain("yoke", -0.1),

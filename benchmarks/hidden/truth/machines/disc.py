@@ -8,14 +8,14 @@ from __future__ import annotations
 import numpy as np
 
 from hidden.truth import faults, foreign
-from hidden.truth.archetype import Archetype, Hidden, Plan, Spot
-from hidden.truth.body import Body, Joint, Skeleton, skeleton
+from hidden.truth.archetype import Archetype, Hidden, Plan, Spot, no_tempco
+from hidden.truth.body import Body, Joint, Skeleton
 from hidden.truth.change import Change
 from hidden.truth.draw import Draw
 from hidden.truth.effects import METER, airflow, blown, bridge, covered, draught, heating, less, spinning, warming
 from hidden.truth.films import air, plate_still, radiation
-from hidden.truth.losses import ALPHA, copper
-from hidden.truth.machine import Array, Film, Inputs, Loss, Machine, Stream
+from hidden.truth.losses import ALPHA, joule
+from hidden.truth.machine import Array, Film, Inputs, Loss, Stream
 from hidden.truth.profile import Rng, levels, steady, until
 from hidden.truth.readings import Logger
 
@@ -99,15 +99,12 @@ def films(s: Skeleton, d: Draw) -> list[Film]:
 def losses(s: Skeleton, d: Draw) -> list[Loss]:
     R, iron, eddy = R20 * d.factor("copper", 0.04), 130.0 * d.factor("iron", 0.15), 28.0 * d.factor("eddy", 0.2)
 
-    def winding(T: Array, u: Inputs) -> Array:
-        return copper(R, u["current_A"], T)
-
     def core(T: Array, u: Inputs) -> float:
         f = abs(u["speed_rpm"]) / 3000.0
         return iron * (0.4 * f**1.05 + 0.6 * f**1.8)
 
     out = [
-        Loss("coils", s.cells("coils"), np.full(6, 1 / 6), winding),
+        Loss("coils", s.cells("coils"), np.full(6, 1 / 6), joule(R)),
         Loss("core", s.cells("teeth"), np.full(6, 1 / 6), core),
     ]
     for side in SIDES:
@@ -129,8 +126,7 @@ def losses(s: Skeleton, d: Draw) -> list[Loss]:
     return out
 
 
-def machine(d: Draw, change: Change) -> Machine:
-    s = skeleton([*bodies(d), *change.bodies], [*joints(d), *change.joints])
+def streams(s: Skeleton, d: Draw) -> list[Stream]:
     blower, pumping = 0.016 * d.factor("blower", 0.1), 0.006 * d.factor("pumping", 0.2)
 
     def mcp(T: Array, u: Inputs) -> float:
@@ -138,8 +134,7 @@ def machine(d: Draw, change: Change) -> Machine:
         flow = 2e-3 + blower * u["blower_on"] + pumping * abs(u["speed_rpm"]) / 3000.0
         return flow * 352.98 / (u["T_ambient"] + 273.15) * 1006.0
 
-    streams = tuple(Stream(s.cells(f"air.{side}"), "T_ambient", mcp) for side in SIDES)
-    return Machine(s, (*films(s, d), *streams, *losses(s, d), *change.terms(s)))
+    return [Stream(s.cells(f"air.{side}"), "T_ambient", mcp) for side in SIDES]
 
 
 def drive(current: Array, speed: Array, blower: Array, wind: Array) -> dict[str, Array]:
@@ -173,7 +168,9 @@ def road(rng: Rng, at: Array) -> dict[str, Array]:
 
 DISC = Archetype(
     name="disc",
-    build=machine,
+    bodies=bodies,
+    joints=joints,
+    terms=(films, streams, losses),
     plans=(
         Plan("locked rotor", "calibrate", 80.0, locked),
         Plan("bench", "calibrate", 80.0, bench),
@@ -196,12 +193,7 @@ DISC = Archetype(
         Hidden("ac copper@coils", lambda a: heating("coils", a, (2.0, 1.85), (2.0, 2.0), fade=0.002), 300.0),
         Hidden("load loss@magnets.left", lambda a: heating("magnets.left", a, (2.0, 1.8), (2.0, 2.0)), 60.0),
         Hidden("bridge@coils-ring", lambda a: bridge("leads", a, "coils", "ring", (0.9, 0.5)), 12.0),
-        Hidden(
-            "no tempco@coils",
-            lambda a: warming("coils", 3.0 * R20, a),
-            ALPHA,
-            ((("losses", "joule", "alpha_1_K"), 0.0),),
-        ),
+        Hidden("no tempco@coils", lambda a: warming("coils", 3.0 * R20, a), ALPHA, no_tempco("joule")),
     ),
     faults={
         "sensor.gain@coils": lambda seed: faults.gain("coils", -0.08),

@@ -12,13 +12,13 @@ from numpy.typing import NDArray
 
 from hidden.truth import faults, foreign
 from hidden.truth.archetype import Archetype, Hidden, Plan, Spot
-from hidden.truth.body import Body, Joint, Skeleton, skeleton
+from hidden.truth.body import Body, Joint, Skeleton
 from hidden.truth.change import Change
 from hidden.truth.draw import Draw
 from hidden.truth.effects import METER, airflow, bridge, covered, draught, heating, less
 from hidden.truth.films import across_gap, cylinder_still, plate_still, radiation
-from hidden.truth.losses import bearing, bertotti, copper
-from hidden.truth.machine import Array, Film, Inputs, Loss, Machine
+from hidden.truth.losses import bearing, bertotti, copper, joule
+from hidden.truth.machine import Array, Film, Inputs, Loss
 from hidden.truth.profile import Rng, levels, steady, until
 from hidden.truth.readings import Logger
 
@@ -176,22 +176,17 @@ def losses(s: Skeleton, d: Draw) -> list[Loss]:
         grease = bearing(30.0 * d.factor(f"grease-{end}", 0.25), RATED, 0.004)
         share = (0.53 if end == "weld" else 0.47) * 0.4
         out += [
-            Loss(f"{end}", s.cells(end), np.full(5, share / 5), lambda T, u: copper(R, u["current_A"], T)),
+            Loss(f"{end}", s.cells(end), np.full(5, share / 5), joule(R)),
             Loss(f"grease.{end}", np.array([s.cell(cover, 0.999), s.cell("rotor", x)]), np.array([0.7, 0.3]), grease),
         ]
     return out
 
 
-def machine(d: Draw, change: Change) -> Machine:
-    s = skeleton([*bodies(d), *change.bodies], [*joints(d), *change.joints])
-    sides, back = (
-        (s.cells("oil.weld"), s.cells("oil.bend")),
-        (s.cell("warm", 0), s.cell("cooled", 0), s.cell("tank", 0)),
-    )
-    loop = OilLoop(
-        sides, back, d.factor("flow", 0.03), d.between("weld share", 0.47, 0.53), 60.0 * d.factor("cooler", 0.15)
-    )
-    return Machine(s, (*films(s, d), loop, *losses(s, d), *change.terms(s)))
+def oil(s: Skeleton, d: Draw) -> list[OilLoop]:
+    sides = s.cells("oil.weld"), s.cells("oil.bend")
+    back = s.cell("warm", 0), s.cell("cooled", 0), s.cell("tank", 0)
+    weld, UA = d.between("weld share", 0.47, 0.53), 60.0 * d.factor("cooler", 0.15)
+    return [OilLoop(sides, back, d.factor("flow", 0.03), weld, UA)]
 
 
 def drive(current: Array, speed: Array, flow: Array, wind: Array) -> dict[str, Array]:
@@ -237,7 +232,9 @@ PARTS |= {"rotor": "rotor", "housing": "housing", "rear cover": "rear", "layer 2
 
 HAIRPIN = Archetype(
     name="hairpin",
-    build=machine,
+    bodies=bodies,
+    joints=joints,
+    terms=(films, oil, losses),
     plans=(
         Plan("direct current", "calibrate", 75.0, direct),
         Plan("load", "calibrate", 75.0, load),

@@ -7,12 +7,12 @@ from numpy.typing import NDArray
 
 from hidden.truth import faults, foreign
 from hidden.truth.archetype import Archetype, Hidden, Plan, Spot
-from hidden.truth.body import Body, Joint, Skeleton, skeleton
+from hidden.truth.body import Body, Joint, Skeleton
 from hidden.truth.change import Change
 from hidden.truth.draw import Draw
 from hidden.truth.effects import METER, bridge, covered, draught, heating, less, room_air, switched, to_room
 from hidden.truth.films import plate_still, radiation
-from hidden.truth.machine import Array, Film, Loss, Machine
+from hidden.truth.machine import Array, Film, Loss
 from hidden.truth.profile import Rng, steady
 from hidden.truth.readings import Logger
 
@@ -90,11 +90,6 @@ def losses(s: Skeleton, d: Draw) -> list[Loss]:
     ]
 
 
-def machine(d: Draw, change: Change) -> Machine:
-    s = skeleton([*bodies(d), *change.bodies], [*joints(d), *change.joints])
-    return Machine(s, (*films(s, d), *losses(s, d), *change.terms(s)))
-
-
 def switching(at: Array, rng: Rng, on: tuple[float, float], off: tuple[float, float]) -> Array:
     """0 and 1, held for minutes drawn between these."""
     ends, state = [0.0], []
@@ -122,7 +117,9 @@ def both(rng: Rng, at: Array) -> dict[str, Array]:
 
 INCUBATOR = Archetype(
     name="incubator",
-    build=machine,
+    bodies=bodies,
+    joints=joints,
+    terms=(films, losses),
     plans=(
         Plan("heat up and cool", "calibrate", 120.0, still),
         Plan("stirred", "calibrate", 90.0, stirred),

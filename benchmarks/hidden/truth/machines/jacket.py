@@ -6,13 +6,13 @@ import numpy as np
 
 from hidden.truth import faults, foreign
 from hidden.truth.archetype import Archetype, Hidden, Plan, Spot
-from hidden.truth.body import Body, Joint, Skeleton, skeleton
+from hidden.truth.body import Body, Joint, Skeleton
 from hidden.truth.change import Change
 from hidden.truth.draw import Draw
 from hidden.truth.effects import METER, airflow, covered, draught, heating, less, stirred_gap
 from hidden.truth.films import across_gap, channel, cylinder_still, plate_still, radiation, stirred
-from hidden.truth.losses import bearing, bertotti, copper
-from hidden.truth.machine import Array, Film, Inputs, Loss, Machine, Stream
+from hidden.truth.losses import bearing, bertotti, joule
+from hidden.truth.machine import Array, Film, Inputs, Loss, Stream
 from hidden.truth.profile import Rng, levels, steady, until
 
 RATED = 4000.0
@@ -123,14 +123,11 @@ def losses(s: Skeleton, d: Draw) -> list[Loss]:
     kh, ke, kx = 160.0 * d.factor("iron", 0.15), 190.0 * d.factor("eddy", 0.2), 50.0 * d.factor("excess", 0.3)
     km = 40.0 * d.factor("magnet", 0.2)
 
-    def winding(T: Array, u: Inputs) -> Array:
-        return copper(R, u["current_A"], T)
-
     def iron(T: Array, u: Inputs) -> Array:
         return bertotti(T, u["speed_rpm"] / RATED, kh, ke, kx)
 
     out = [
-        Loss("slot", s.cells("slot"), np.full(11, 0.5 / 11), winding),
+        Loss("slot", s.cells("slot"), np.full(11, 0.5 / 11), joule(R)),
         Loss("teeth", s.cells("teeth"), np.full(11, 0.6 / 11), iron),
         Loss("yoke", s.cells("yoke"), np.full(11, 0.4 / 11), iron),
         Loss(
@@ -143,17 +140,14 @@ def losses(s: Skeleton, d: Draw) -> list[Loss]:
     for end, _ in ENDS:
         P = 22.0 * d.factor(f"bearing.{end}", 0.25)
 
-        out.append(Loss(f"end.{end}", s.cells(f"winding.{end}"), np.full(5, 0.25 / 5), winding))
+        out.append(Loss(f"end.{end}", s.cells(f"winding.{end}"), np.full(5, 0.25 / 5), joule(R)))
         out.append(Loss(f"grease.{end}", s.cells(f"bearing.{end}"), np.full(2, 0.5), bearing(P, RATED, 0.004)))
     return out
 
 
-def machine(d: Draw, change: Change) -> Machine:
-    """The machine of one draw with what is hidden in it."""
-    s = skeleton([*bodies(d), *change.bodies], [*joints(d), *change.joints])
+def streams(s: Skeleton, d: Draw) -> list[Stream]:
     share = d.factor("flow", 0.03)  # of the recorded litres per minute
-    water = Stream(s.cells("water"), "T_coolant", lambda T, u: share * u["flow_l_min"] / 60000.0 * 1055.0 * 3380.0)
-    return Machine(s, (*films(s, d), water, *losses(s, d), *change.terms(s)))
+    return [Stream(s.cells("water"), "T_coolant", lambda T, u: share * u["flow_l_min"] / 60000.0 * 1055.0 * 3380.0)]
 
 
 def drive(at: Array, current: Array, speed: Array, wind: Array, flow: Array, inlet: Array) -> dict[str, Array]:
@@ -194,7 +188,9 @@ def road(rng: Rng, at: Array) -> dict[str, Array]:
 
 JACKET = Archetype(
     name="jacket",
-    build=machine,
+    bodies=bodies,
+    joints=joints,
+    terms=(films, streams, losses),
     plans=(
         Plan("standstill", "calibrate", 75.0, direct),
         Plan("load", "calibrate", 75.0, load),

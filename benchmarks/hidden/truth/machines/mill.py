@@ -8,14 +8,14 @@ from __future__ import annotations
 import numpy as np
 
 from hidden.truth import faults, foreign
-from hidden.truth.archetype import Archetype, Hidden, Plan, Spot
-from hidden.truth.body import Body, Joint, Skeleton, skeleton
+from hidden.truth.archetype import Archetype, Hidden, Plan, Spot, no_tempco
+from hidden.truth.body import Body, Joint, Skeleton
 from hidden.truth.change import Change
 from hidden.truth.draw import Draw
 from hidden.truth.effects import METER, airflow, covered, draught, heating, joined, less, spinning, switched, warming
 from hidden.truth.films import across_gap, plate_still, radiation
-from hidden.truth.losses import ALPHA, copper
-from hidden.truth.machine import Array, Film, Inputs, Loss, Machine
+from hidden.truth.losses import ALPHA, joule
+from hidden.truth.machine import Array, Film, Inputs, Loss
 from hidden.truth.profile import Rng, levels, steady, until
 from hidden.truth.readings import Logger
 
@@ -125,9 +125,6 @@ def losses(s: Skeleton, d: Draw) -> list[Loss]:
     R, cage = R20 * d.factor("copper", 0.04), 640.0 * d.factor("cage", 0.15)
     kh, ke = 330.0 * d.factor("iron", 0.15), 260.0 * d.factor("eddy", 0.2)
 
-    def winding(T: Array, u: Inputs) -> Array:
-        return copper(R, u["current_A"], T)
-
     def iron(T: Array, u: Inputs) -> Array:
         f = abs(u["speed_rpm"]) / RATED
         return (kh * f + ke * f**1.9) * (1.0 - 0.0004 * (T - 40.0))
@@ -137,7 +134,7 @@ def losses(s: Skeleton, d: Draw) -> list[Loss]:
         return slip * cage * np.maximum(u["current_A"] ** 2 - 900.0, 0.0) / 5500.0 * (1.0 + 0.004 * (T - 60.0))
 
     out = [
-        Loss("slot", s.cells("slot"), np.full(6, 0.52 / 6), winding),
+        Loss("slot", s.cells("slot"), np.full(6, 0.52 / 6), joule(R)),
         Loss("teeth", s.cells("teeth"), np.full(6, 0.55 / 6), iron),
         Loss("yoke", s.cells("yoke"), np.full(6, 0.45 / 6), iron),
         Loss("bars", s.cells("rotor"), np.full(6, 1 / 6), bars),
@@ -148,14 +145,9 @@ def losses(s: Skeleton, d: Draw) -> list[Loss]:
         def grease(T: Array, u: Inputs, P: float = P) -> Array:
             return P * (abs(u["speed_rpm"]) / RATED) ** 1.2 * np.exp(-0.007 * (T - 50.0))
 
-        out.append(Loss(f"coil.{end}", s.cells(f"coil.{end}"), np.full(4, 0.24 / 4), winding))
+        out.append(Loss(f"coil.{end}", s.cells(f"coil.{end}"), np.full(4, 0.24 / 4), joule(R)))
         out.append(Loss(f"grease.{end}", s.cells(f"bearing.{end}"), np.full(2, 0.5), grease))
     return out
-
-
-def machine(d: Draw, change: Change) -> Machine:
-    s = skeleton([*bodies(d), *change.bodies], [*joints(d), *change.joints])
-    return Machine(s, (*outside(s, d), *inside(s, d), *losses(s, d), *change.terms(s)))
 
 
 NODES = {
@@ -203,7 +195,9 @@ ALL = ("slot", "coil.de", "yoke", "frame", "shield.de", "shield.nde", "bearing.d
 
 MILL = Archetype(
     name="mill",
-    build=machine,
+    bodies=bodies,
+    joints=joints,
+    terms=(outside, inside, losses),
     plans=(
         Plan("dc heating", "calibrate", 120.0, direct),
         Plan("stand", "calibrate", 120.0, stand),
@@ -234,9 +228,7 @@ MILL = Archetype(
         Hidden("friction@n9", lambda a: heating("bearing.de", a, (5 / 3, 1.3), fade=0.004), 150.0),
         Hidden("ac copper@n1", lambda a: heating("slot", a, (2.0, 1.85), (2.0, 2.0), fade=0.002), 900.0),
         Hidden("inverter iron@n4", lambda a: switched("teeth", a / 4000.0, "switching_Hz"), 500.0),
-        Hidden(
-            "no tempco@n1", lambda a: warming("slot", 3.0 * R20, a), ALPHA, ((("losses", "copper", "alpha_1_K"), 0.0),)
-        ),
+        Hidden("no tempco@n1", lambda a: warming("slot", 3.0 * R20, a), ALPHA, no_tempco("copper")),
     ),
     faults={
         "sensor.gain@n5": lambda seed: faults.gain("yoke", -0.1),

@@ -5,14 +5,14 @@ from __future__ import annotations
 import numpy as np
 
 from hidden.truth import faults, foreign
-from hidden.truth.archetype import Archetype, Hidden, Plan, Spot
-from hidden.truth.body import Body, Joint, Skeleton, skeleton
+from hidden.truth.archetype import Archetype, Hidden, Plan, Spot, no_tempco
+from hidden.truth.body import Body, Joint, Skeleton
 from hidden.truth.change import Change
 from hidden.truth.draw import Draw
 from hidden.truth.effects import METER, covered, draught, heating, joined, less, spinning, switched, warming
 from hidden.truth.films import across_gap, cylinder_still, plate_still, radiation
-from hidden.truth.losses import ALPHA, copper
-from hidden.truth.machine import Array, Film, Loss, Machine
+from hidden.truth.losses import ALPHA, joule
+from hidden.truth.machine import Array, Film, Loss
 from hidden.truth.profile import Rng, levels, steady, until
 from hidden.truth.readings import Logger
 
@@ -64,9 +64,6 @@ def films(s: Skeleton, d: Draw) -> list[Film]:
 def losses(s: Skeleton, d: Draw) -> list[Loss]:
     R, iron, grease = R20 * d.factor("copper", 0.04), 2.4 * d.factor("iron", 0.2), 0.8 * d.factor("grease", 0.3)
 
-    def winding(T: Array, u) -> Array:
-        return copper(R, u["current_A"], T)
-
     def core(T: Array, u) -> float:
         f = u["speed_rpm"] / 3000.0
         return iron * (0.55 * f + 0.45 * f**2)
@@ -75,15 +72,10 @@ def losses(s: Skeleton, d: Draw) -> list[Loss]:
         return grease * (u["speed_rpm"] / 3000.0) ** 1.3 * np.exp(-0.008 * (T - 40.0))
 
     return [
-        Loss("winding", s.cells("copper"), np.full(5, 0.2), winding),
+        Loss("winding", s.cells("copper"), np.full(5, 0.2), joule(R)),
         Loss("iron", s.cells("teeth"), np.full(5, 0.2), core),
         Loss("grease", s.cells("rotor"), np.full(4, 0.25), bearings),
     ]
-
-
-def machine(d: Draw, change: Change) -> Machine:
-    s = skeleton([*bodies(d), *change.bodies], [*joints(d), *change.joints])
-    return Machine(s, (*films(s, d), *losses(s, d), *change.terms(s)))
 
 
 def drive(current: Array, speed: Array) -> dict[str, Array]:
@@ -105,7 +97,9 @@ def duty(rng: Rng, at: Array) -> dict[str, Array]:
 
 SERVO = Archetype(
     name="servo",
-    build=machine,
+    bodies=bodies,
+    joints=joints,
+    terms=(films, losses),
     plans=(
         Plan("Stillstand", "calibrate", 50.0, held),
         Plan("Leerlauf", "calibrate", 50.0, idle),
@@ -122,12 +116,7 @@ SERVO = Archetype(
         Hidden("bearing friction@rotor", lambda a: heating("rotor", a, (5 / 3, 1.2), fade=0.004), 3.0),
         Hidden("ac copper@copper", lambda a: heating("copper", a, (2.0, 1.85), (2.0, 2.0), fade=0.002), 400.0),
         Hidden("inverter iron@case", lambda a: switched("teeth", a / 16000.0, "switching_Hz"), 15.0),
-        Hidden(
-            "no tempco@copper",
-            lambda a: warming("copper", 3.0 * R20, a),
-            ALPHA,
-            ((("losses", "Kupfer", "alpha_1_K"), 0.0),),
-        ),
+        Hidden("no tempco@copper", lambda a: warming("copper", 3.0 * R20, a), ALPHA, no_tempco("Kupfer")),
     ),
     faults={
         "sensor.gain@Wicklung": lambda seed: faults.gain("copper", -0.1),

@@ -6,13 +6,13 @@ import numpy as np
 
 from hidden.truth import faults, foreign
 from hidden.truth.archetype import Archetype, Hidden, Plan, Spot
-from hidden.truth.body import Body, Joint, Skeleton, skeleton
+from hidden.truth.body import Body, Joint, Skeleton
 from hidden.truth.change import Change
 from hidden.truth.draw import Draw
 from hidden.truth.effects import METER, airflow, bridge, covered, draught, fading, heating, less, spinning, stirred_gap
 from hidden.truth.films import across_gap, cylinder_still, mixed, plate_still, radiation, stirred
-from hidden.truth.losses import bearing, bertotti, copper
-from hidden.truth.machine import Array, Film, Loss, Machine
+from hidden.truth.losses import bearing, bertotti, joule
+from hidden.truth.machine import Array, Film, Loss
 from hidden.truth.profile import Rng, levels, steady, until
 
 RATED = 1500.0
@@ -125,30 +125,21 @@ def losses(s: Skeleton, d: Draw) -> list[Loss]:
     R1, R2 = 0.5 * d.factor("copper", 0.04), 0.3 * d.factor("cage", 0.12)
     kh, ke, kx = 80.0 * d.factor("iron", 0.15), 50.0 * d.factor("eddy", 0.2), 20.0 * d.factor("excess", 0.3)
 
-    def winding(T: Array, u) -> Array:
-        return copper(R1, u["current_A"], T)
-
     def iron(T: Array, u) -> Array:
         return bertotti(T, u["speed_rpm"] / RATED, kh, ke, kx)
 
     out = [
-        Loss("slot", s.cells("slot"), np.full(11, 0.45 / 11), winding),
+        Loss("slot", s.cells("slot"), np.full(11, 0.45 / 11), joule(R1)),
         Loss("teeth", s.cells("teeth"), np.full(11, 0.55 / 11), iron),
         Loss("yoke", s.cells("yoke"), np.full(11, 0.45 / 11), iron),
-        Loss("cage", s.cells("rotor"), np.full(11, 1 / 11), lambda T, u: copper(R2, u["rotor_A"], T)),
+        Loss("cage", s.cells("rotor"), np.full(11, 1 / 11), joule(R2, "rotor_A")),
     ]
     for end, _ in ENDS:
         P = 14.0 * d.factor(f"bearing.{end}", 0.25)
 
-        out.append(Loss(f"end.{end}", s.cells(f"winding.{end}"), np.full(5, 0.275 / 5), winding))
+        out.append(Loss(f"end.{end}", s.cells(f"winding.{end}"), np.full(5, 0.275 / 5), joule(R1)))
         out.append(Loss(f"grease.{end}", s.cells(f"bearing.{end}"), np.full(2, 0.5), bearing(P, RATED)))
     return out
-
-
-def machine(d: Draw, change: Change) -> Machine:
-    """The machine of one draw with what is hidden in it."""
-    s = skeleton([*bodies(d), *change.bodies], [*joints(d), *change.joints])
-    return Machine(s, (*outside(s, d), *inside(s, d), *losses(s, d), *change.terms(s)))
 
 
 def drive(current: Array, speed: Array, wind: Array) -> dict[str, Array]:
@@ -178,7 +169,9 @@ def road(rng: Rng, at: Array) -> dict[str, Array]:
 
 TEFC = Archetype(
     name="tefc",
-    build=machine,
+    bodies=bodies,
+    joints=joints,
+    terms=(outside, inside, losses),
     plans=(
         Plan("standstill", "calibrate", 75.0, direct),
         Plan("load", "calibrate", 75.0, load),

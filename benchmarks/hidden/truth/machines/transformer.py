@@ -8,14 +8,14 @@ from __future__ import annotations
 import numpy as np
 
 from hidden.truth import faults, foreign
-from hidden.truth.archetype import Archetype, Hidden, Plan, Spot
-from hidden.truth.body import Body, Joint, Skeleton, skeleton
+from hidden.truth.archetype import Archetype, Hidden, Plan, Spot, no_tempco
+from hidden.truth.body import Body, Joint, Skeleton
 from hidden.truth.change import Change
 from hidden.truth.draw import Draw
 from hidden.truth.effects import METER, bridge, covered, draught, fading, heating, less, warming
 from hidden.truth.films import plate_still, radiation
 from hidden.truth.losses import ALPHA
-from hidden.truth.machine import Array, Film, Inputs, Loss, Machine, Stream
+from hidden.truth.machine import Array, Film, Inputs, Loss, Stream
 from hidden.truth.profile import Rng, levels, steady
 from hidden.truth.readings import Logger
 
@@ -114,8 +114,7 @@ def losses(s: Skeleton, d: Draw) -> list[Loss]:
     return out
 
 
-def machine(d: Draw, change: Change) -> Machine:
-    s = skeleton([*bodies(d), *change.bodies], [*joints(d), *change.joints])
+def streams(s: Skeleton, d: Draw) -> list[Stream]:
     draws, blows = d.factor("chimney", 0.15), d.factor("blown", 0.15)
 
     def rising(n: float):
@@ -127,8 +126,7 @@ def machine(d: Draw, change: Change) -> Machine:
 
         return mcp
 
-    air = [Stream(s.cells(f"duct.{a}"), "T_ambient", rising(n)) for a, n in COILS]
-    return Machine(s, (*films(s, d), *air, *losses(s, d), *change.terms(s)))
+    return [Stream(s.cells(f"duct.{a}"), "T_ambient", rising(n)) for a, n in COILS]
 
 
 def drive(current: Array, voltage: Array, one: Array, two: Array) -> dict[str, Array]:
@@ -160,14 +158,15 @@ def works(rng: Rng, at: Array) -> dict[str, Array]:
     return drive(levels(at, rng, 10.0, 105.0, 8.0), volts, turns(at, rng, 20.0), turns(at, rng, 20.0))
 
 
-NO_TEMPCO = tuple((("losses", loss, "alpha_1_K"), 0.0) for loss in ("low", "high"))
 READ = {"lv.mid": 0.6, "lv.outer": 0.5, "hv.mid": 0.5, "hv.outer": 0.5, "yoke": 0.5, "clamp": 0.5}
 CALLED = {"lv.mid": "LV middle", "lv.outer": "LV outer", "hv.mid": "HV middle", "hv.outer": "HV outer"}
 
 
 TRANSFORMER = Archetype(
     name="transformer",
-    build=machine,
+    bodies=bodies,
+    joints=joints,
+    terms=(films, streams, losses),
     plans=(
         Plan("no load", "calibrate", 180.0, no_load),
         Plan("short circuit", "calibrate", 180.0, shorted),
@@ -184,7 +183,7 @@ TRANSFORMER = Archetype(
         Hidden("harmonics@lv.outer", lambda a: heating("lv.outer", a, current=(2.0, 1.9)), 600.0),
         Hidden("bridge@clamp-lv.outer", lambda a: bridge("blocks", a, "clamp", "lv.outer", (0.5, 0.0)), 8.0),
         Hidden("dust@hv.outer", lambda a: fading("hv.outer", a), 0.5),
-        Hidden("no tempco@lv", lambda a: warming("lv.outer", 2.0 * R_LV, a), ALPHA, NO_TEMPCO[:1]),
+        Hidden("no tempco@lv", lambda a: warming("lv.outer", 2.0 * R_LV, a), ALPHA, no_tempco("low")),
     ),
     faults={
         "sensor.gain@LV middle": lambda seed: faults.gain("lv.mid", -0.1),
