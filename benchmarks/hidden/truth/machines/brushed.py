@@ -177,6 +177,9 @@ def road(rng: Rng, at: Array) -> dict[str, Array]:
     return drive(levels(at, rng, 40.0, 200.0, 4.0), levels(at, rng, 300.0, 1900.0, 6.0), wind, steady(at, 380.0))
 
 
+NODES = ("winding.armature", "rotor", "commutator", "poles", "winding.field", "yoke", "flange.de", "flange.nde")
+PARTS = {n: {"winding.armature": "armature", "rotor": "core", "winding.field": "field"}.get(n, n) for n in NODES}
+
 BRUSHED = Archetype(
     name="brushed",
     bodies=bodies,
@@ -190,12 +193,7 @@ BRUSHED = Archetype(
         Plan("road-2", "hold-out", 75.0, road),
     ),
     thermometers={
-        "commutator": Spot("commutator", 0.5),
-        "poles": Spot("poles", 0.5),
-        "winding.field": Spot("field", 0.5),
-        "yoke": Spot("yoke", 0.5),
-        "flange.de": Spot("flange.de", 0.5),
-        "flange.nde": Spot("flange.nde", 0.5),
+        **{n: Spot(PARTS[n], 0.5) for n in NODES if n not in ("winding.armature", "rotor")},
         "air.de": Spot("air", 0.8),
     },
     baths={"bench": Spot("bench", 0.1)},
@@ -250,16 +248,7 @@ BRUSHED = Archetype(
         "still": 0.15,
         "capacity.yoke": 0.08,
     },
-    parts={
-        "winding.armature": "armature",
-        "rotor": "core",
-        "commutator": "commutator",
-        "poles": "poles",
-        "winding.field": "field",
-        "yoke": "yoke",
-        "flange.de": "flange.de",
-        "flange.nde": "flange.nde",
-    },
+    parts=PARTS,
     passing=(
         Hidden("convection.constant@yoke", lambda a: draught("yoke", a), 60.0),
         Hidden("convection.constant@flange.nde", lambda a: draught("flange.nde", a), 15.0),

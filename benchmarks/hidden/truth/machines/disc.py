@@ -178,13 +178,7 @@ DISC = Archetype(
         Plan("road", "validate", 80.0, road),
         Plan("road back", "hold-out", 80.0, road),
     ),
-    thermometers={
-        "coils": Spot("coils", 0.5),
-        "teeth": Spot("teeth", 0.5),
-        "ring": Spot("ring", 0.5),
-        "cover.left": Spot("cover.left", 0.5),
-        "cover.right": Spot("cover.right", 0.5),
-    },
+    thermometers={n: Spot(n, 0.5) for n in ("coils", "teeth", "ring", "cover.left", "cover.right")},
     missing=(
         Hidden("road wind@ring", lambda a: airflow("ring", a), 20.0),
         Hidden("shaft fan@cover.right", lambda a: spinning("cover.right", a), 10.0),

@@ -186,6 +186,19 @@ def road(rng: Rng, at: Array) -> dict[str, Array]:
     )
 
 
+NODES = (
+    "winding.slot",
+    "winding.de",
+    "winding.nde",
+    "stator",
+    "magnets",
+    "rotor",
+    "housing",
+    "shield.de",
+    "shield.nde",
+)
+PARTS = {n: {"winding.slot": "slot", "stator": "yoke"}.get(n, n) for n in NODES}
+
 JACKET = Archetype(
     name="jacket",
     bodies=bodies,
@@ -198,15 +211,7 @@ JACKET = Archetype(
         Plan("road", "validate", 75.0, road),
         Plan("road-2", "hold-out", 75.0, road),
     ),
-    thermometers={
-        "winding.slot": Spot("slot", 0.5),
-        "winding.de": Spot("winding.de", 0.5),
-        "stator": Spot("yoke", 0.5),
-        "magnets": Spot("magnets", 0.5),
-        "housing": Spot("housing", 0.5),
-        "shield.de": Spot("shield.de", 0.5),
-        "shield.nde": Spot("shield.nde", 0.5),
-    },
+    thermometers={n: Spot(PARTS[n], 0.5) for n in NODES if n not in ("winding.nde", "rotor")},
     baths={"bench": Spot("bench", 0.1)},
     missing=(
         Hidden("convection@shield.de", lambda a: airflow("shield.de", a), 30.0),
@@ -255,17 +260,7 @@ JACKET = Archetype(
         "gap": 0.15,
         "magnet": 0.2,
     },
-    parts={
-        "winding.slot": "slot",
-        "winding.de": "winding.de",
-        "winding.nde": "winding.nde",
-        "stator": "yoke",
-        "magnets": "magnets",
-        "rotor": "rotor",
-        "housing": "housing",
-        "shield.de": "shield.de",
-        "shield.nde": "shield.nde",
-    },
+    parts=PARTS,
     passing=(
         Hidden("convection.constant@housing", lambda a: draught("housing", a), 60.0),
         Hidden("convection.constant@shield.nde", lambda a: draught("shield.nde", a), 20.0),

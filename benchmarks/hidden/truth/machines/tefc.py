@@ -167,6 +167,10 @@ def road(rng: Rng, at: Array) -> dict[str, Array]:
     return drive(levels(at, rng, 7.0, 18.0, 4.0), levels(at, rng, 500.0, 2600.0, 6.0), wind)
 
 
+NODES = ("winding.slot", "winding.de", "winding.nde", "core", "rotor", "housing")
+NODES += ("flange.de", "flange.nde", "bearing.de", "bearing.nde")
+PARTS = {n: {"winding.slot": "slot", "core": "yoke"}.get(n, n) for n in NODES}
+
 TEFC = Archetype(
     name="tefc",
     bodies=bodies,
@@ -180,12 +184,9 @@ TEFC = Archetype(
         Plan("road-2", "hold-out", 75.0, road),
     ),
     thermometers={
-        "winding.slot": Spot("slot", 0.5),
-        "winding.de": Spot("winding.de", 0.5),
-        "core": Spot("yoke", 0.5),
-        "housing": Spot("housing", 0.5),
-        "flange.de": Spot("flange.de", 0.5),
-        "flange.nde": Spot("flange.nde", 0.5),
+        **{
+            n: Spot(PARTS[n], 0.5) for n in ("winding.slot", "winding.de", "core", "housing", "flange.de", "flange.nde")
+        },
         "bearing.de": Spot("bearing.de", 0.3),
     },
     baths={"bench": Spot("bench", 0.1)},
@@ -239,18 +240,7 @@ TEFC = Archetype(
         "spigot-de": 0.25,
         "still": 0.15,
     },
-    parts={
-        "winding.slot": "slot",
-        "winding.de": "winding.de",
-        "winding.nde": "winding.nde",
-        "core": "yoke",
-        "rotor": "rotor",
-        "housing": "housing",
-        "flange.de": "flange.de",
-        "flange.nde": "flange.nde",
-        "bearing.de": "bearing.de",
-        "bearing.nde": "bearing.nde",
-    },
+    parts=PARTS,
     passing=(
         Hidden("convection.constant@housing", lambda a: draught("housing", a), 60.0),
         Hidden("convection.constant@flange.de", lambda a: draught("flange.de", a), 15.0),
