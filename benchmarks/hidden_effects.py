@@ -81,8 +81,8 @@ def main() -> None:
                 [
                     markdown(table),
                     diagram(reliability(pairs(out))),
-                    "\n".join(temper.markdown(temper.folds(pairs(out)))),
-                    "\n".join(temper.sharpness_folds(pairs(out))),
+                    temper.markdown(temper.folds(pairs(out))),
+                    temper.sharpness_folds(pairs(out)),
                 ]
             )
             + "\n"
