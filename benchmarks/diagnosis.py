@@ -10,7 +10,6 @@ With `--case` the diagnosis of that case instead, with its whole catalogue and w
 from __future__ import annotations
 
 import argparse
-import resource
 import time
 import tracemalloc
 from collections.abc import Callable
@@ -26,7 +25,7 @@ from lumped.model.build import bare_network, node_link, node_source
 from lumped.model.network import Network, Parameter
 from lumped.transfer.laws import Fixed, InputPower, Linear, Power
 from measured.case import Case, Channel, Model, Test
-from scripts.published import measured_row as row, write_rows
+from scripts.published import cpu_s, measured_row as row, print_rows, write_rows
 from thermoscope.case_folder.folder import load_case
 from validation import diagnose
 from validation.comparison.linearisation import segments
@@ -99,14 +98,9 @@ def case() -> Case:
 
 def timed(work: Callable[[], Any]) -> tuple[Any, float, float]:
     """Result, wall seconds, CPU seconds of this process and its children."""
-    begun, cpu = time.perf_counter(), _cpu()
+    begun, cpu = time.perf_counter(), cpu_s()
     out = work()
-    return out, time.perf_counter() - begun, _cpu() - cpu
-
-
-def _cpu() -> float:
-    own, children = (resource.getrusage(who) for who in (resource.RUSAGE_SELF, resource.RUSAGE_CHILDREN))
-    return own.ru_utime + own.ru_stime + children.ru_utime + children.ru_stime
+    return out, time.perf_counter() - begun, cpu_s() - cpu
 
 
 def kinds(now: Case) -> list[str]:
@@ -176,8 +170,7 @@ def main() -> None:
     parser.add_argument("--case", type=Path)
     options = parser.parse_args()
     found = rows_of(options.case) if options.case else rows(options.samples)
-    for r in found:
-        print(f"{r['case']:34} {r['measure']:34} {r['ours']:10.2f} {r['unit']}   limit {r['peer']:g}")
+    print_rows(found)
     write_rows(options.json, "diagnosis", found)
 
 

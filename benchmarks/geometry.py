@@ -33,7 +33,7 @@ from geom import (
 from geom.machine_file import machine_from
 from geom.meshing.mesher import _planned
 from geom.solids.cad import solids
-from scripts.published import measured_row as row, write_rows
+from scripts.published import measured_row as row, print_rows, write_rows
 
 SETTINGS: dict[str, dict[str, Any]] = {
     "coarse": COARSE,
@@ -132,8 +132,7 @@ def main() -> None:
     found = [*motor_rows(), *library_rows()]
     write_rows(target, "geometry", found)
     if target != "-":
-        for line in found:
-            print(f"{line['case']:36} {line['measure']:30} {line['ours']:12.4g} {line['unit']}")
+        print_rows(found)
 
 
 if __name__ == "__main__":

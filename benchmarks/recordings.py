@@ -28,7 +28,7 @@ import numpy as np
 
 from geom.errors import ThermoscopeError
 from measured.case import Case
-from scripts.published import publish, table
+from scripts.published import cpu_s, publish, table
 from thermoscope.case_folder.folder import find_case, load_case
 from validation.comparison.compare import Comparison, pooled
 from validation.revision.improvement import MOST, Improvement, Supervisor, improve, singletons
@@ -203,14 +203,6 @@ def row(source: Source, case: Case, yard: Yardstick, result: Improvement, second
     rows = [replace(c, rmse_K=c.fitted_rmse_K) for c in scoped(yard, result.stairs[-1].comparison) if c.fitted_rmse_K]
     fitted = pooled(rows) if rows else steps[-1][1]
     return Row(source.name, *counts, yards, steps, fitted, verdict, result.why, seconds, bool(source.case))
-
-
-def cpu_s() -> float:
-    """CPU time of this process and of those that it started and that ended (s)."""
-    import resource
-
-    both = (resource.getrusage(who) for who in (resource.RUSAGE_SELF, resource.RUSAGE_CHILDREN))
-    return sum(u.ru_utime + u.ru_stime for u in both)
 
 
 def recordings_table(rows: Sequence[Row]) -> str:

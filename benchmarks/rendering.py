@@ -30,7 +30,7 @@ sys.path = [p for p in sys.path if Path(p).resolve() != Path(__file__).resolve()
 from geom import NamedMesh, build_mesh, load_machine
 from lumped.model.network import Row
 from measured.case import Channel, Test
-from scripts.published import measured_row as row, write_rows
+from scripts.published import measured_row as row, print_rows, write_rows
 from viz import split, write_recording
 from viz.colours import LIGHT
 from viz.data import Comparison
@@ -158,9 +158,7 @@ def main() -> None:
     nodes, rows = pictures(mesh)
     rows = [*rows, *recording(nodes), *click(nodes)]
     print(f"{os.cpu_count()} cores, load {load:.1f}")
-    for r in rows:
-        peer = f"  {r['peer_name']} {r['peer']:.3g}  ratio {r['ratio']:.2g}" if r["peer"] else ""
-        print(f"{r['case']:60s} {r['measure']:20s} {r['ours']:.3g} {r['unit']}{peer}")
+    print_rows(rows)
     write_rows(options.json, "rendering", rows, load=load)
 
 

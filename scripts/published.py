@@ -17,7 +17,7 @@ import os
 import platform
 from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
-from typing import Any
+from typing import Any, TextIO
 
 ROOT = Path(__file__).parents[1]
 FRONT, HUST = ROOT / "README.md", ROOT / "cases" / "hust-ipmsm" / "README.md"
@@ -77,6 +77,21 @@ def measured_row(
     """A row of a benchmark; ratio is ours over the peer's, or over what is wanted."""
     against = {"peer": peer, "peer_name": peer_name, "ratio": ours / peer if peer else None}
     return {"case": case, "measure": measure, "unit": unit, "ours": ours, **against, "n": None, "ci95": None}
+
+
+def print_rows(rows: Iterable[Mapping[str, Any]], to: TextIO | None = None) -> None:
+    """Rows of a benchmark, one a line; to : stdout if it is not given."""
+    for r in rows:
+        peer = f"   {r['peer_name']} {r['peer']:.4g}   ratio {r['ratio']:.3g}" if r["peer"] else ""
+        print(f"{r['case']:36} {r['measure']:36} {r['ours']:12.6g} {r['unit']}{peer}", file=to, flush=True)
+
+
+def cpu_s() -> float:
+    """CPU time of this process and of those that it started and that ended (s)."""
+    import resource
+
+    both = (resource.getrusage(who) for who in (resource.RUSAGE_SELF, resource.RUSAGE_CHILDREN))
+    return sum(u.ru_utime + u.ru_stime for u in both)
 
 
 def write_rows(file: Path | str | None, benchmark: str, rows: Sequence[Mapping[str, Any]], **more: Any) -> None:
