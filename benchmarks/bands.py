@@ -23,7 +23,7 @@ from hidden.user import case_of
 
 from lumped.model.network import Row
 from measured.case import Case
-from scripts.published import write_rows
+from scripts.published import table, write_rows
 from validation import calibrate
 from validation.bands import Place, bands, parameter_posterior
 
@@ -118,14 +118,13 @@ def rows(held: list[Held]) -> list[dict]:
     return out
 
 
-def markdown(table: list[dict]) -> str:
-    head = ["| machine | places | inside (%) | 95 % | width (K) | error (K) | n |", "|---|---|---|---|---|---|---|"]
-    body = [
-        f"| {r['case']} | {r['measure'].split(', ')[1]} | {100 * r['ours']:.1f} | {100 * r['ci95'][0]:.0f} to "
-        f"{100 * r['ci95'][1]:.0f} | {r['width_K']:.1f} | {r['error_K']:.1f} | {r['n']} |"
-        for r in table
-    ]
-    return "\n".join([*head, *body])
+def markdown(found: list[dict]) -> str:
+    body = []
+    for r in found:
+        span = f"{100 * r['ci95'][0]:.0f} to {100 * r['ci95'][1]:.0f}"
+        kelvin = (f"{r[key]:.1f}" for key in ("width_K", "error_K"))
+        body.append([r["case"], r["measure"].split(", ")[1], f"{100 * r['ours']:.1f}", span, *kelvin, r["n"]])
+    return table(["machine", "places", "inside (%)", "95 %", "width (K)", "error (K)", "n"], body)
 
 
 def main() -> None:
@@ -148,9 +147,9 @@ def main() -> None:
                     f"width {h.width:6.1f} error {h.error:5.1f}",
                     flush=True,
                 )
-    table = rows(held)
-    print(markdown(table))
-    write_rows(a.json, "bands", table, seeds=a.seeds)
+    found = rows(held)
+    print(markdown(found))
+    write_rows(a.json, "bands", found, seeds=a.seeds)
 
 
 if __name__ == "__main__":

@@ -22,7 +22,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from condensed.cost import Row, offline_rows, row
+from condensed.cost import Row, offline_rows
 from condensed.points import Pair, Point
 
 from fem.solvers.solve import Fluids, steady
@@ -31,7 +31,7 @@ from lumped.build.network_size import NetworkSize, smallest_network
 from lumped.build.pipeline import Meshing
 from lumped.condensation.reduction_error import Errors, errors, merged
 from lumped.model.network import Network
-from scripts.published import publish, write_rows
+from scripts.published import measured_row as row, publish, table, write_rows
 
 WANTED = {"mean": 1.0, "hot": 2.0, "point": 2.0}
 AT_RANDOM = {**WANTED, "hot": 3.0}
@@ -154,29 +154,21 @@ def shown(r: Row) -> Row:
     return r
 
 
-GROUPS = (
-    "nominal",
-    "all films",
-    "one film x10",
-    "contacts",
-    "gap, flow",
-    "random",
-    "step of loss, nominal",
-    "step of loss, random",
-)
+GROUPS: tuple[str, ...] = ("nominal", "all films", "one film x10", "contacts")
+GROUPS += ("gap, flow", "random", "step of loss, nominal", "step of loss, random")
 
 
-def table(rows: list[Row]) -> str:
+def accuracy_table(rows: list[Row]) -> str:
     """One line per machine in Markdown: mean / hot spot / point in percent."""
     rows = [r for r in rows if not r["case"].startswith("motor,")]
     value = {(r["case"], r["measure"]): r["ours"] for r in rows}
     head = ["machine", "unknowns", "states", *GROUPS]
-    lines = ["| " + " | ".join(head) + " |", "|" + "---|" * len(head)]
+    lines = []
     for name in sorted({r["case"] for r in rows}):
         cells = [f"{value[name, 'unknowns of the field']:.0f}", f"{value[name, 'states']:.0f}"]
         cells += [" / ".join(f"{value[name, f'{kind}, {group}']:.2g}" for kind in WANTED) for group in GROUPS]
-        lines.append(f"| {name} | " + " | ".join(cells) + " |")
-    return "\n".join(lines)
+        lines.append([name, *cells])
+    return table(head, lines)
 
 
 def kept(file: str | None, machines: list[str]) -> list[Row]:
@@ -203,7 +195,7 @@ def main() -> None:
             rows += [shown(r) for r in machine_rows(name, COARSE if given.coarse else {}, given.accuracy)]
     write_rows(given.json, "condensation", rows)
     if given.table:
-        publish(Path(given.table), "accuracy", table(rows))
+        publish(Path(given.table), "accuracy", accuracy_table(rows))
 
 
 if __name__ == "__main__":

@@ -10,7 +10,6 @@ With `--case` the diagnosis of that case instead, with its whole catalogue and w
 from __future__ import annotations
 
 import argparse
-import resource
 import time
 import tracemalloc
 from collections.abc import Callable
@@ -26,7 +25,7 @@ from lumped.model.build import bare_network, node_link, node_source
 from lumped.model.network import Network, Parameter
 from lumped.transfer.laws import Fixed, InputPower, Linear, Power
 from measured.case import Case, Channel, Model, Test
-from scripts.published import write_rows
+from scripts.published import cpu_s, measured_row as row, print_rows, write_rows
 from thermoscope.case_folder.folder import load_case
 from validation import diagnose
 from validation.comparison.linearisation import segments
@@ -99,14 +98,9 @@ def case() -> Case:
 
 def timed(work: Callable[[], Any]) -> tuple[Any, float, float]:
     """Result, wall seconds, CPU seconds of this process and its children."""
-    begun, cpu = time.perf_counter(), _cpu()
+    begun, cpu = time.perf_counter(), cpu_s()
     out = work()
-    return out, time.perf_counter() - begun, _cpu() - cpu
-
-
-def _cpu() -> float:
-    own, children = (resource.getrusage(who) for who in (resource.RUSAGE_SELF, resource.RUSAGE_CHILDREN))
-    return own.ru_utime + own.ru_stime + children.ru_utime + children.ru_stime
+    return out, time.perf_counter() - begun, cpu_s() - cpu
 
 
 def kinds(now: Case) -> list[str]:
@@ -150,11 +144,11 @@ def rows(samples: int) -> list[dict[str, Any]]:
     chosen = kinds(now)
     diagnose(now, chosen)  # compile
     _, wall, cpu = timed(lambda: diagnose(now, chosen))
-    out += [row(name, "wall time", "s", wall, LIMIT_S), row(name, "CPU time", "s", cpu, 2 * LIMIT_S)]
+    out += [row(name, "wall time", "s", wall, LIMIT_S, "limit"), row(name, "CPU time", "s", cpu, 2 * LIMIT_S, "limit")]
     net = motor()
     sizes = {n: peak(Case("long", Model(net), (recorded(net, "long", n, 1.0),))) for n in (samples // 4, samples)}
     measure = f"memory over a quarter's {sizes[samples // 4]:.0f} MB"
-    out.append(row(f"{samples} samples", measure, "1", sizes[samples] / sizes[samples // 4], MORE))
+    out.append(row(f"{samples} samples", measure, "1", sizes[samples] / sizes[samples // 4], MORE, "limit"))
     return out
 
 
@@ -165,20 +159,8 @@ def rows_of(folder: Path) -> list[dict[str, Any]]:
     for what, limit, chosen in (("whole catalogue", WHOLE_S, None), (f"{CANDIDATES} candidates", LIMIT_S, few)):
         _, wall, cpu = timed(lambda chosen=chosen: diagnose(now, chosen, plan=False))
         name = f"{now.name}, {what}"
-        out += [row(name, "wall time", "s", wall, limit), row(name, "CPU time", "s", cpu, 2 * limit)]
+        out += [row(name, "wall time", "s", wall, limit, "limit"), row(name, "CPU time", "s", cpu, 2 * limit, "limit")]
     return out
-
-
-def row(name: str, measure: str, unit: str, ours: float, limit: float) -> dict[str, Any]:
-    return {
-        "case": name,
-        "measure": measure,
-        "unit": unit,
-        "ours": ours,
-        "peer": limit,
-        "peer_name": "limit",
-        "ratio": ours / limit,
-    }
 
 
 def main() -> None:
@@ -188,8 +170,7 @@ def main() -> None:
     parser.add_argument("--case", type=Path)
     options = parser.parse_args()
     found = rows_of(options.case) if options.case else rows(options.samples)
-    for r in found:
-        print(f"{r['case']:34} {r['measure']:34} {r['ours']:10.2f} {r['unit']}   limit {r['peer']:g}")
+    print_rows(found)
     write_rows(options.json, "diagnosis", found)
 
 

@@ -32,7 +32,7 @@ from fem.solvers.transient import transient
 from geom import build_mesh, load_machine
 from lumped.build.pipeline import field_of
 from lumped.machine.motor import nominal_coefficients
-from scripts.published import write_rows
+from scripts.published import measured_row as row, print_rows, write_rows
 
 SIZES = {"50k": 36, "300k": 66}
 LARGE = {"1M": 99}
@@ -128,31 +128,17 @@ def motor_rows() -> list[dict[str, Any]]:
     return [*rows, row(case, "hottest after the hour", "degC", float(T[-1].max()))]
 
 
-def row(
-    case: str, measure: str, unit: str, ours: float, peer: float | None = None, name: str | None = None
-) -> dict[str, Any]:
-    """One line of the table; ratio is ours over the peer's."""
-    out = {"case": case, "measure": measure, "unit": unit, "ours": ours, "peer": peer, "peer_name": name}
-    return {**out, "ratio": ours / peer if peer else None, "n": None, "ci95": None}
-
-
-def shown(rows: list[dict[str, Any]]) -> list[dict[str, Any]]:
-    """The same rows, printed beside the document."""
-    for r in rows:
-        peer = f"   {r['peer_name']} {r['peer']:.6g}   ratio {r['ratio']:.3g}" if r["peer"] else ""
-        print(f"{r['case']:24} {r['measure']:36} {r['ours']:12.6g} {r['unit']}{peer}", file=sys.stderr)
-    return rows
-
-
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--json", metavar="FILE", help="write the rows there; - is stdout")
     parser.add_argument("--large", action="store_true", help="a million unknowns as well; scikit-fem takes 8 GiB there")
     parser.add_argument("--stack", action="store_true", help="only the hollow cylinder")
     given = parser.parse_args()
-    rows = [] if given.stack else shown(motor_rows())
+    rows = [] if given.stack else motor_rows()
+    print_rows(rows, sys.stderr)
     for case, n in {**SIZES, **(LARGE if given.large else {})}.items():
-        rows += shown(stack_rows(case, n))
+        rows += (found := stack_rows(case, n))
+        print_rows(found, sys.stderr)
     write_rows(given.json, "field", rows)
 
 

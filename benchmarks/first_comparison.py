@@ -24,7 +24,7 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 
-from scripts.published import write_rows
+from scripts.published import measured_row, write_rows
 
 ROOT = Path(__file__).resolve().parents[1]
 HUST, TCLAB = ROOT / "cases" / "hust-ipmsm", ROOT / "cases" / "tclab"
@@ -208,13 +208,6 @@ def run(trial: Trial, out: Path) -> dict[str, float | str]:
     return {"cpu": cpu() - before, "wall": time.monotonic() - begun, "answer": answer}
 
 
-def row(name: str, clock: str, seconds: float) -> dict[str, float | str]:
-    """A row of the document of a benchmark."""
-    measure = f"first comparison, {clock}"
-    about = {"peer": WISHED_S, "peer_name": "wished", "ratio": seconds / WISHED_S}
-    return {"case": name, "measure": measure, "unit": "s", "ours": seconds, **about}
-
-
 def cpu() -> float:
     used = resource.getrusage(resource.RUSAGE_CHILDREN)
     return used.ru_utime + used.ru_stime
@@ -234,7 +227,10 @@ def main() -> None:
             took = run(trial, Path(folder) / f"case-{i}")
             print(f"| {trial.name} | {took['cpu']:.1f} s | {took['wall']:.1f} s |", flush=True)
             print(f"    {took['answer']}", file=sys.stderr)
-            rows += [row(trial.name, unit, float(took[unit])) for unit in ("cpu", "wall")]
+            rows += [
+                measured_row(trial.name, f"first comparison, {clock}", "s", float(took[clock]), WISHED_S, "wished")
+                for clock in ("cpu", "wall")
+            ]
     write_rows(options.json, "first_comparison", rows)
 
 

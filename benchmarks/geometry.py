@@ -33,7 +33,7 @@ from geom import (
 from geom.machine_file import machine_from
 from geom.meshing.mesher import _planned
 from geom.solids.cad import solids
-from scripts.published import write_rows
+from scripts.published import measured_row as row, print_rows, write_rows
 
 SETTINGS: dict[str, dict[str, Any]] = {
     "coarse": COARSE,
@@ -125,11 +125,6 @@ def library_rows() -> list[dict[str, Any]]:
     return rows
 
 
-def row(case: str, measure: str, unit: str, ours: float) -> dict[str, Any]:
-    empty = {"peer": None, "peer_name": None, "ratio": None, "n": None, "ci95": None}
-    return {"case": case, "measure": measure, "unit": unit, "ours": ours, **empty}
-
-
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--json", metavar="FILE", help="write the rows there; - is stdout")
@@ -137,8 +132,7 @@ def main() -> None:
     found = [*motor_rows(), *library_rows()]
     write_rows(target, "geometry", found)
     if target != "-":
-        for line in found:
-            print(f"{line['case']:36} {line['measure']:30} {line['ours']:12.4g} {line['unit']}")
+        print_rows(found)
 
 
 if __name__ == "__main__":

@@ -80,9 +80,9 @@ def main() -> None:
             "\n\n".join(
                 [
                     markdown(table),
-                    "\n".join(diagram(reliability(pairs(out)))),
-                    "\n".join(temper.markdown(temper.folds(pairs(out)))),
-                    "\n".join(temper.sharpness_folds(pairs(out))),
+                    diagram(reliability(pairs(out))),
+                    temper.markdown(temper.folds(pairs(out))),
+                    temper.sharpness_folds(pairs(out)),
                 ]
             )
             + "\n"

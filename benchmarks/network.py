@@ -18,7 +18,7 @@ import tempfile
 import time
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
-from typing import Any, TextIO
+from typing import Any
 
 import numpy as np
 from peers.network import peers, reference, timed
@@ -28,7 +28,7 @@ from lumped.integration.simulate import Record, simulate
 from lumped.model.build import bare_network, node_link, node_source
 from lumped.model.network import Network, Parameter
 from lumped.transfer.laws import Fixed, InputPower, Linear, Power, Radiation
-from scripts.published import write_rows
+from scripts.published import measured_row as row, print_rows, write_rows
 
 MEMBERS = 1000
 
@@ -179,17 +179,6 @@ def compiling() -> list[dict[str, Any]]:
     return out
 
 
-def row(case: str, measure: str, unit: str, ours: float, peer: float | None = None, name: str = "") -> dict[str, Any]:
-    """One line of the table; ratio is ours over the peer's."""
-    found = {"peer": peer, "peer_name": name or None, "ratio": ours / peer if peer else None}
-    return {"case": case, "measure": measure, "unit": unit, "ours": ours, **found, "n": None, "ci95": None}
-
-
-def shown(r: dict[str, Any], to: TextIO) -> None:
-    peer = f"  {r['peer_name']} {r['peer']:.4g}  ratio {r['ratio']:.3g}" if r["peer"] else ""
-    print(f"{r['case']:36s} {r['measure']:22s} {r['ours']:.4g} {r['unit']}{peer}", file=to, flush=True)
-
-
 PARTS = {"compiling": compiling, "sizes": sizes, "ensembles": ensembles, "peers": against_peers}
 
 
@@ -201,10 +190,8 @@ def main() -> None:
     target = given.json
     rows: list[dict[str, Any]] = []
     for part in (PARTS[name] for name in given.only):
-        found = part()
-        rows += found
-        for r in found:
-            shown(r, sys.stderr if target == "-" else sys.stdout)
+        rows += (found := part())
+        print_rows(found, sys.stderr if target == "-" else sys.stdout)
     write_rows(target, "network", rows)
 
 

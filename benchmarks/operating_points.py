@@ -55,7 +55,7 @@ from lumped.transfer.properties import Fluid, air
 from lumped.transfer.ranges import within_silence
 from lumped.transfer.terms_value import coefficient
 from lumped.transfer.thin_air import density, thin_film, thin_stream
-from scripts.published import publish
+from scripts.published import publish, table
 
 ALLOWED = 0.02
 CIRCUITS: dict[str, list[dict[str, object]]] = {
@@ -92,7 +92,7 @@ def main() -> int:
     if options.json:
         options.json.write_text(json.dumps([[*key, *value] for key, value in found.items()], indent=1))
     if options.page:
-        publish(PAGE, "operating-points", table(found, asked))
+        publish(PAGE, "operating-points", points_tables(found, asked))
     return int(bool(silent or inside) or any(off > ALLOWED for off, _ in found.values()))
 
 
@@ -105,17 +105,12 @@ def worst(pairs: Iterable[tuple[Key, Pair]]) -> dict[Key, tuple[float, int]]:
     return out
 
 
-def table(found: Mapping[Key, tuple[float, int]], asked: Mapping[str, tuple[int, int, int, int]]) -> str:
+def points_tables(found: Mapping[Key, tuple[float, int]], asked: Mapping[str, tuple[int, int, int, int]]) -> str:
     """A row per kind, a column per family or coolant: percent, of how many points."""
-    lines = ["| | of | points | furthest off |", "|---|---|---|---|"]
-    lines += [f"| {kind} | {of} | {count:,} | {100.0 * off:.2f} % |" for (kind, of), (off, count) in found.items()]
-    lines += [
-        "",
-        "| correlation | points | outside its range | of these in silence | inside and told |",
-        "|---|---|---|---|---|",
-    ]
-    lines += [f"| `{name}` | {' | '.join(f'{n:,}' for n in counts)} |" for name, counts in sorted(asked.items())]
-    return "\n".join(lines)
+    off = [(kind, of, f"{count:,}", f"{100.0 * share:.2f} %") for (kind, of), (share, count) in found.items()]
+    head = ("correlation", "points", "outside its range", "of these in silence", "inside and told")
+    said = [(f"`{name}`", *(f"{n:,}" for n in counts)) for name, counts in sorted(asked.items())]
+    return f"{table(['', 'of', 'points', 'furthest off'], off)}\n\n{table(head, said)}"
 
 
 def subjects(

@@ -28,7 +28,7 @@ import numpy as np
 
 from geom.errors import ThermoscopeError
 from measured.case import Case
-from scripts.published import publish
+from scripts.published import cpu_s, publish, table
 from thermoscope.case_folder.folder import find_case, load_case
 from validation.comparison.compare import Comparison, pooled
 from validation.revision.improvement import MOST, Improvement, Supervisor, improve, singletons
@@ -39,20 +39,8 @@ ROOT = Path(__file__).parents[1]
 PAGES = (ROOT / "docs" / "recordings.md", ROOT / "README.md")
 RAW = ("csv", "gz", "txt", "lvm", "xlsx", "tdms", "mf4", "parquet")
 KEPT_BACK = ("id_5", "id_8", "id_11", "id_15")  # those of the paper
-HEAD = (
-    "recording",
-    "tests (kept back)",
-    "no model",
-    "black box",
-    "free network",
-    "declared",
-    "calibrated",
-    "at the end",
-    "sensors as fitted",
-    "over the best",
-    "added",
-    "CPU (s)",
-)
+HEAD: tuple[str, ...] = ("recording", "tests (kept back)", "no model", "black box", "free network", "declared")
+HEAD += ("calibrated", "at the end", "sensors as fitted", "over the best", "added", "CPU (s)")
 FEWEST = 60  # rows of a third of a file: fewer are steady points, no course of time
 
 
@@ -217,22 +205,14 @@ def row(source: Source, case: Case, yard: Yardstick, result: Improvement, second
     return Row(source.name, *counts, yards, steps, fitted, verdict, result.why, seconds, bool(source.case))
 
 
-def cpu_s() -> float:
-    """CPU time of this process and of those that it started and that ended (s)."""
-    import resource
-
-    both = (resource.getrusage(who) for who in (resource.RUSAGE_SELF, resource.RUSAGE_CHILDREN))
-    return sum(u.ru_utime + u.ru_stime for u in both)
-
-
-def table(rows: Sequence[Row]) -> str:
+def recordings_table(rows: Sequence[Row]) -> str:
     """As Markdown: what ran first, then why others did not."""
-    lines = [f"| {' | '.join(HEAD)} |", f"|{'---|' * len(HEAD)}"]
+    cells = []
     for r in (r for r in rows if not r.fault):
         words = {name: f"{value:.2f}" for name, value in r.yardsticks.items()}
         added = [name for name, _ in r.steps if name not in ("start", "calibrate")]
         start = f"{r.steps[0][1]:.2f}" if r.published else ""
-        cells = [
+        row = [
             r.name,
             f"{r.tests} ({r.kept})",
             *(words[k] for k in KINDS),
@@ -244,7 +224,8 @@ def table(rows: Sequence[Row]) -> str:
             ", ".join(added).replace("|", "\\|") or "nothing",
             f"{r.cpu_s:.0f}",
         ]
-        lines.append(f"| {' | '.join(cells)} |")
+        cells.append(row)
+    lines = [table(HEAD, cells)]
     ratios = np.array([r.ratios for r in rows if np.isfinite(r.ratios).all()])
     if ratios.size:
         middle, worst = (" / ".join(f"{x:.2f}" for x in of(ratios, axis=0)) for of in (np.median, np.max))
@@ -266,7 +247,7 @@ def main() -> None:
             Row(**{k: v for k, v in r.items() if k != "ratios"}) for r in json.loads(options.page.read_text())["rows"]
         ]
         for page in PAGES:
-            publish(page, "recordings", table(rows))
+            publish(page, "recordings", recordings_table(rows))
         return
     scratch = Path(tempfile.mkdtemp())
     try:
@@ -280,7 +261,7 @@ def main() -> None:
             if options.json:
                 document = {"rows": [{**asdict(r), "ratios": r.ratios} for r in rows]}
                 options.json.write_text(json.dumps(document, indent=1), encoding="utf-8")
-        print(table(rows))
+        print(recordings_table(rows))
     finally:
         shutil.rmtree(scratch)
 

@@ -30,7 +30,7 @@ sys.path = [p for p in sys.path if Path(p).resolve() != Path(__file__).resolve()
 from geom import NamedMesh, build_mesh, load_machine
 from lumped.model.network import Row
 from measured.case import Channel, Test
-from scripts.published import write_rows
+from scripts.published import measured_row as row, print_rows, write_rows
 from viz import split, write_recording
 from viz.colours import LIGHT
 from viz.data import Comparison
@@ -147,12 +147,6 @@ def click(nodes: SplitMesh) -> list[dict[str, Any]]:
     return [row(case, "time", "s", float(np.median(walls))), row(case, "time, CPU", "s", float(np.median(cpus)))]
 
 
-def row(case: str, measure: str, unit: str, ours: float, peer: float | None = None, name: str = "") -> dict[str, Any]:
-    """One line of the table; ratio is ours over the peer's."""
-    out = {"case": case, "measure": measure, "unit": unit, "ours": ours}
-    return {**out, "peer": peer, "peer_name": name, "ratio": ours / peer if peer else None}
-
-
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--size-mm", type=float, default=10.0)
@@ -164,9 +158,7 @@ def main() -> None:
     nodes, rows = pictures(mesh)
     rows = [*rows, *recording(nodes), *click(nodes)]
     print(f"{os.cpu_count()} cores, load {load:.1f}")
-    for r in rows:
-        peer = f"  {r['peer_name']} {r['peer']:.3g}  ratio {r['ratio']:.2g}" if r["peer"] else ""
-        print(f"{r['case']:60s} {r['measure']:20s} {r['ours']:.3g} {r['unit']}{peer}")
+    print_rows(rows)
     write_rows(options.json, "rendering", rows, load=load)
 
 

@@ -25,7 +25,7 @@ from hidden.user import case_of
 from geom.arrays import Array
 from measured.case import Case, Recorded, Test
 from measured.recordings.grid import averaged, read, rms
-from scripts.published import ROOT, publish
+from scripts.published import ROOT, publish, table
 
 EVERY, MOVED = (2, 10), 0.1
 HABITS = {
@@ -112,8 +112,8 @@ def _bare(name: str) -> str:
 
 def markdown(answers: Sequence[Mapping[str, Any]], before: Sequence[Mapping[str, Any]] = ()) -> str:
     """Rows per recorder and number of rows left; of another file, too, on the cases that both have."""
-    heads = "rows left", "verdict or lead changed", "P(nothing) moved by over 10 %", "log score, whole record", "then"
-    lines = [f"| recorder | {' | '.join(heads)} |", "|---|---|---|---|---|---|"]
+    heads = "verdict or lead changed | P(nothing) moved by over 10 % | log score, whole record | then"
+    lines = []
     files = [scores(x) for x in (before, answers) if x]
     for habit, n in sorted(set.intersection(*map(set, files)), key=lambda key: (list(HABITS).index(key[0]), key[1])):
         each = [x[habit, n] for x in files]
@@ -121,8 +121,8 @@ def markdown(answers: Sequence[Mapping[str, Any]], before: Sequence[Mapping[str,
         told, now = [np.array([x[case] for case in cases]) for x in each], " now" * (len(each) > 1)
         cells = [" before, ".join(f"{t[:, k].sum():.0f} of {len(t)}" for t in told) + now for k in (0, 1)]
         cells += [" before, ".join(f"{t[:, k].mean():.2f}" for t in told) + now for k in (2, 3)]
-        lines.append(f"| {HABITS[habit]} | one in {n} | {' | '.join(cells)} |")
-    return "\n".join(lines)
+        lines.append([HABITS[habit], f"one in {n}", *cells])
+    return table(["recorder", "rows left", *heads.split(" | ")], lines)
 
 
 def scores(answers: Sequence[Mapping[str, Any]]) -> dict[tuple[str, int], dict[str, tuple[float, ...]]]:
@@ -152,10 +152,10 @@ def main() -> None:
     a = parser.parse_args()
     if not a.score:
         run(plan(a.seeds, a.skip + a.count, a.classes, a.kinds)[a.skip :], a.habits, a.every, a.out)
-    table = markdown(rows(a.out), rows(a.before))
-    print(table)
+    found = markdown(rows(a.out), rows(a.before))
+    print(found)
     if a.page:
-        publish(PAGE, "steadiness", table)
+        publish(PAGE, "steadiness", found)
 
 
 if __name__ == "__main__":

@@ -13,6 +13,7 @@ from geom.description.reading import usual_geometry
 from geom.families.family import Family
 from geom.machine_file import families, library, load_machine, machine_from
 from scripts.drawing import drawing_of
+from scripts.published import table
 
 FOLDER = Path(__file__).resolve().parents[1] / "docs" / "families"
 
@@ -51,14 +52,10 @@ def family_page(family: Family, picture: str) -> str:
             *(_JACKETS if any(p.name == "port_mm" for p in family.parameters) else ()),
             "A key ending in `_mm` or `_deg` carries that unit; one without is a count, a share or a word.",
             "",
-            "| parameter | default | allowed | meaning |",
-            "|---|---|---|---|",
-            *free,
+            table(["parameter", "default", "allowed", "meaning"], free),
             "",
             *_MEASURED,
-            "| ratio | default | allowed | or | default | allowed | meaning |",
-            "|---|---|---|---|---|---|---|",
-            *measured,
+            table(["ratio", "default", "allowed", "or", "default", "allowed", "meaning"], measured),
             *_outlines(family),
             "",
         ]
@@ -69,31 +66,27 @@ def _outlines(family: Family) -> list[str]:
     """What [[outlines.NAME]] may draw."""
     if not family.outlines:
         return []
-    rows = [f"| `[[outlines.{name}]]` | {words} |" for name, words in family.outlines.items()]
+    rows = ((f"`[[outlines.{name}]]`", words) for name, words in family.outlines.items())
     words = (
         "Shapes in the plane, each group `copies` times around the axis: `loops_mm` is a list of shapes, each a list "
         "of points `[x, y]` or `[x, y, bulge]` in mm, drawn around +x; a bulge, as in DXF, is tan(sweep / 4) of the "
         "edge that leaves the point. Shapes may touch, not cut each other. `thermoscope model import` writes such "
         "files ([import](../how-to/import.md))."
     )
-    return ["", "## Outlines", "", words, "", "| shapes | are |", "|---|---|", *rows]
+    return ["", "## Outlines", "", words, "", table(["shapes", "are"], rows)]
 
 
-def _rows(family: Family, measured: bool) -> list[str]:
+def _rows(family: Family, measured: bool) -> list[tuple[object, ...]]:
     usual = usual_geometry(family.parameters)
     parameters = [p for p in family.parameters if (p.of is not None) == measured]
-    return [
-        _measured(p, usual) if measured else f"| `{p.key}` | {p.default} | {p.allowed} | {p.doc} |" for p in parameters
-    ]
+    return [_measured(p, usual) if measured else (f"`{p.key}`", p.default, p.allowed, p.doc) for p in parameters]
 
 
-def _measured(p: Parameter, usual: Geometry) -> str:
+def _measured(p: Parameter, usual: Geometry) -> tuple[object, ...]:
     assert p.of is not None
     ratio = (p.usual - p.of.start(usual)) / p.of.span(usual) if p.default else 0.0
-    return (
-        f"| `{p.group}.{p.ratio_name}` | {ratio:.3g} | {p.allowed_ratio} | `{p.name}` | {p.default} | {p.allowed} "
-        f"| {p.doc} |"
-    )
+    length = (f"`{p.name}`", p.default, p.allowed, p.doc)
+    return (f"`{p.group}.{p.ratio_name}`", f"{ratio:.3g}", p.allowed_ratio, *length)
 
 
 def write_pages(folder: Path | str) -> list[Path]:

@@ -11,6 +11,7 @@ from typing import Any
 
 from lumped.schemas.bounds import COLDEST, HOTTEST
 from lumped.schemas.schema import FILES, schema
+from scripts.published import table
 
 PAGE = Path(__file__).parents[1] / "docs" / "reference" / "keys.md"
 HEAD = f"""# Keys of all files
@@ -30,17 +31,9 @@ def page() -> str:
 
 def _section(name: str) -> str:
     document = schema(name)
-    rows = [f"| `{way}` | {words} | {text} |" for way, words, text in _escaped(document)]
-    return (
-        f"## {document['title']}\n\n| key | may be | what it is |\n|---|---|---|\n"
-        + "\n".join(dict.fromkeys(rows))
-        + "\n"
-    )
-
-
-def _escaped(document: Any) -> Iterator[tuple[str, ...]]:
-    for row in _rows(document, ""):
-        yield tuple(cell.replace("|", "\\|") for cell in row)
+    escaped = ([cell.replace("|", "\\|") for cell in row] for row in _rows(document, ""))
+    rows = dict.fromkeys((f"`{way}`", words, text) for way, words, text in escaped)
+    return f"## {document['title']}\n\n{table(['key', 'may be', 'what it is'], rows)}\n"
 
 
 def _rows(node: Any, way: str) -> Iterator[tuple[str, str, str]]:

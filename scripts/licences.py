@@ -11,6 +11,8 @@ from pathlib import Path
 
 from packaging.requirements import Requirement
 
+from scripts.published import table
+
 ROOT = Path(__file__).resolve().parents[1]
 PAGE = ROOT / "docs" / "reference" / "licences.md"
 PARTS = ("cad", "view", "bench", "oil")
@@ -81,7 +83,7 @@ def parts_of() -> dict[str, str]:
 def page() -> str:
     """The page as Markdown."""
     found = parts_of()
-    rows = [f"| {name} | {part} | {licence(name)} |" for name, part in found.items()]
+    rows = ((name, part, licence(name)) for name, part in found.items())
     count = {part: sum(p == part for p in found.values()) for part in dict.fromkeys(found.values())}
     return "\n".join(
         [
@@ -93,9 +95,7 @@ def page() -> str:
             "Nothing in the core is under the GPL or the LGPL.",
             "What makes films (`[video]`) has an encoder under the GPL, so it is in no other part.",
             "",
-            "| package | part | licence |",
-            "|---|---|---|",
-            *rows,
+            table(["package", "part", "licence"], rows),
             "",
         ]
     )

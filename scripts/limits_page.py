@@ -9,6 +9,7 @@ from importlib import import_module
 from pathlib import Path
 
 from geom.limits import LIMITS
+from scripts.published import table
 
 PAGE = Path(__file__).parents[1] / "docs" / "reference" / "limits.md"
 HEAD = """# Limits
@@ -20,8 +21,6 @@ exit code 2, names the limit, and leaves nothing behind. To raise one, set its e
 THERMOSCOPE_MOST_ROWS=20000000 thermoscope test compare CASE
 ```
 
-| limit | usual | variable | what it bounds, and why this number |
-|---|---|---|---|
 """
 OTHERS = {  # that no variable raises: what -> where, unit
     "a name": ("geom.description.names:LETTERS", "letters"),
@@ -34,17 +33,18 @@ OTHERS = {  # that no variable raises: what -> where, unit
 
 
 def limits_table() -> str:
-    """The limits as rows of a Markdown table."""
-    rows = (f"| `{x.name}` | {x.usual:,} | `{x.variable}` | {x.unit} {x.why} |" for x in LIMITS)
-    return "\n".join(rows)
+    """The limits as a Markdown table."""
+    rows = ((f"`{x.name}`", f"{x.usual:,}", f"`{x.variable}`", f"{x.unit} {x.why}") for x in LIMITS)
+    return table(["limit", "usual", "variable", "what it bounds, and why this number"], rows)
 
 
 def page() -> str:
     """The page as Markdown."""
     names = {what: (*where.split(":"), unit) for what, (where, unit) in OTHERS.items()}
-    rows = [f"| {w} | {getattr(import_module(m), n):,.9g} | {unit} | `{m}:{n}` |" for w, (m, n, unit) in names.items()]
-    others = "\n".join(["Nothing raises these:", "", "| what | at most | unit | where |", "|---|---|---|---|", *rows])
-    return f"{HEAD}{limits_table()}\n\n{others}\n"
+    most = {w: f"{getattr(import_module(module), name):,.9g}" for w, (module, name, _) in names.items()}
+    rows = ((w, most[w], unit, f"`{module}:{name}`") for w, (module, name, unit) in names.items())
+    others = table(["what", "at most", "unit", "where"], rows)
+    return f"{HEAD}{limits_table()}\n\nNothing raises these:\n\n{others}\n"
 
 
 if __name__ == "__main__":

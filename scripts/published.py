@@ -15,9 +15,9 @@ import datetime
 import json
 import os
 import platform
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
-from typing import Any
+from typing import Any, TextIO
 
 ROOT = Path(__file__).parents[1]
 FRONT, HUST = ROOT / "README.md", ROOT / "cases" / "hust-ipmsm" / "README.md"
@@ -34,16 +34,20 @@ def between(text: str, marker: str, new: str) -> str:
     return f"{before}{begin}{new.strip()}{end}{after}"
 
 
+def table(head: Sequence[str], rows: Iterable[Sequence[object]]) -> str:
+    """A table in Markdown."""
+    first = "|".join(f" {name} " if name else " " for name in head)
+    lines = (f"| {' | '.join(map(str, row))} |" for row in rows)
+    return "\n".join([f"|{first}|", f"|{'---|' * len(head)}", *lines])
+
+
 def demo_table(stages: Sequence[Mapping[str, Any]]) -> str:
     """Rms error (K) of all sensors, a row per model; the held-out test in bold."""
     tests = stages[0]["tests"]
     bold = ["**" if t["role"] == "hold-out" else "" for t in tests]
     names = [f"{b}{t['name']}{' (held out)' if b else ''}{b}" for b, t in zip(bold, tests, strict=True)]
-    lines = [f"| model | {' | '.join(names)} |", f"|{'---|' * (len(tests) + 1)}"]
-    for stage in stages:
-        cells = [f"{b}{t['rmse_K']:.2f}{b}" for b, t in zip(bold, stage["tests"], strict=True)]
-        lines.append(f"| {stage['stage']} | {' | '.join(cells)} |")
-    return "\n".join(lines)
+    cells = ([f"{b}{t['rmse_K']:.2f}{b}" for b, t in zip(bold, stage["tests"], strict=True)] for stage in stages)
+    return table(["model", *names], ([stage["stage"], *row] for stage, row in zip(stages, cells, strict=True)))
 
 
 def demo_time(demo: Mapping[str, Any]) -> str:
@@ -59,6 +63,35 @@ def machine_arguments(description: str | None) -> argparse.Namespace:
     parser.add_argument("--json", type=Path, metavar="FILE", help="write the rows there; other machines' rows stay")
     parser.add_argument("--page", action="store_true", help="put the tables of FILE into docs/condensation.md")
     return parser.parse_args()
+
+
+def kept_rows(given: argparse.Namespace) -> list[dict[str, Any]]:
+    """Rows of an earlier run that are not measured again.  given : as `machine_arguments` reads them"""
+    rows = json.loads(given.json.read_text())["rows"] if given.json and given.json.exists() else []
+    return [row for row in rows if row["machine"] not in given.machines]
+
+
+def measured_row(
+    case: str, measure: str, unit: str, ours: float, peer: float | None = None, peer_name: str | None = None
+) -> dict[str, Any]:
+    """A row of a benchmark; ratio is ours over the peer's, or over what is wanted."""
+    against = {"peer": peer, "peer_name": peer_name, "ratio": ours / peer if peer else None}
+    return {"case": case, "measure": measure, "unit": unit, "ours": ours, **against, "n": None, "ci95": None}
+
+
+def print_rows(rows: Iterable[Mapping[str, Any]], to: TextIO | None = None) -> None:
+    """Rows of a benchmark, one a line; to : stdout if it is not given."""
+    for r in rows:
+        peer = f"   {r['peer_name']} {r['peer']:.4g}   ratio {r['ratio']:.3g}" if r["peer"] else ""
+        print(f"{r['case']:36} {r['measure']:36} {r['ours']:12.6g} {r['unit']}{peer}", file=to, flush=True)
+
+
+def cpu_s() -> float:
+    """CPU time of this process and of those that it started and that ended (s)."""
+    import resource
+
+    both = (resource.getrusage(who) for who in (resource.RUSAGE_SELF, resource.RUSAGE_CHILDREN))
+    return sum(u.ru_utime + u.ru_stime for u in both)
 
 
 def write_rows(file: Path | str | None, benchmark: str, rows: Sequence[Mapping[str, Any]], **more: Any) -> None:

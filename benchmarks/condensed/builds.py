@@ -18,7 +18,7 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
-from scripts.published import machine_arguments, publish
+from scripts.published import machine_arguments, publish, table
 
 PAGE = Path("docs/condensation.md")
 HEAD = ("machine", "unknowns", "mesh leaves (%)", "at", "states", "CPU (s)", "wall (s)", "memory (GB)", "exit code")
@@ -62,13 +62,13 @@ def memory(pid: int) -> int:
     return mine + sum(memory(int(child)) for child in children)
 
 
-def table(found: Sequence[Mapping[str, Any]]) -> str:
-    lines = [f"| {' | '.join(HEAD)} |", f"|{'---|' * len(HEAD)}"]
+def builds_table(found: Sequence[Mapping[str, Any]]) -> str:
+    rows = []
     for r in sorted(found, key=lambda r: r["machine"]):
-        of_mesh = f"{r['unknowns']:,} | {r['worst']:.1f} | {r['worst_part']} | {r['states']:,}"
-        cost = f"{r['cpu_s']:.0f} | {r['wall_s']:.0f} | {r['memory_GB']:.1f} | {r['exit']}"
-        lines.append(f"| {r['machine']} | {of_mesh} | {cost} |")
-    return "\n".join(lines)
+        of_mesh = (f"{r['unknowns']:,}", f"{r['worst']:.1f}", r["worst_part"], f"{r['states']:,}")
+        cost = (f"{r['cpu_s']:.0f}", f"{r['wall_s']:.0f}", f"{r['memory_GB']:.1f}", r["exit"])
+        rows.append([r["machine"], *of_mesh, *cost])
+    return table(HEAD, rows)
 
 
 def main() -> None:
@@ -80,7 +80,7 @@ def main() -> None:
         if given.json:
             given.json.write_text(json.dumps(found, indent=1))
     if given.page:
-        publish(PAGE, "builds", table(found))
+        publish(PAGE, "builds", builds_table(found))
 
 
 if __name__ == "__main__":

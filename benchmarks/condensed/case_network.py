@@ -9,7 +9,6 @@ from 30 s to two hours, in percent of the machine's largest rise at that time. R
 
 from __future__ import annotations
 
-import json
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
@@ -20,7 +19,7 @@ from lumped.build.fixed_coefficients import FixedCoefficients, rated
 from lumped.build.pipeline import ACROSS, AXIAL, CASE, Meshing, Prepared, meshed, networks_of, reduced
 from lumped.machine.bases import on_all, on_every_base
 from lumped.model.network import Array, Network
-from scripts.published import machine_arguments, publish, write_rows
+from scripts.published import kept_rows, machine_arguments, publish, table, write_rows
 from thermoscope.case_folder.folder import load_machine_file
 
 PAGE = Path("docs/condensation.md")
@@ -99,8 +98,7 @@ def rows(machine: str) -> Iterator[dict[str, Any]]:
 
 def main() -> None:
     given = machine_arguments(__doc__)
-    old = json.loads(given.json.read_text())["rows"] if given.json and given.json.exists() else []
-    found = [row for row in old if row["machine"] not in given.machines]
+    found = kept_rows(given)
     for machine in given.machines:
         for row in rows(machine):
             found.append(row)
@@ -108,11 +106,11 @@ def main() -> None:
             print(f"{case:70} {row['ours']:6.2f} {row['unit']}  {row['measure']}", flush=True)
         write_rows(given.json, "case_network", found)
     if given.page:
-        publish(PAGE, "case-network", table(found, max))
-        publish(PAGE, "small-network", table(found, min))
+        publish(PAGE, "case-network", errors_table(found, max))
+        publish(PAGE, "small-network", errors_table(found, min))
 
 
-def table(found: Sequence[Mapping[str, Any]], which: Callable[[set[int]], int]) -> str:
+def errors_table(found: Sequence[Mapping[str, Any]], which: Callable[[set[int]], int]) -> str:
     """Percent at the part that is furthest off, heated and other: a row per point, a column per machine.
 
     which : of the numbers of states of a machine's networks
@@ -124,12 +122,10 @@ def table(found: Sequence[Mapping[str, Any]], which: Callable[[set[int]], int]) 
         for row in found
         if row["states"] == states[row["machine"]]
     }
-    lines = [f"| heated / other | {' | '.join(machines)} |", f"|{'---|' * (len(machines) + 1)}"]
-    lines.append(f"| states | {' | '.join(str(states[m]) for m in machines)} |")
+    rows: list[list[object]] = [["states", *(states[m] for m in machines)]]
     for case in dict.fromkeys(row["case"] for row in found):
-        each = [" / ".join(cells[case, m, kind] for kind in KINDS) for m in machines]
-        lines.append(f"| {case} | {' | '.join(each)} |")
-    return "\n".join(lines)
+        rows.append([case, *(" / ".join(cells[case, m, kind] for kind in KINDS) for m in machines)])
+    return table(["heated / other", *machines], rows)
 
 
 if __name__ == "__main__":

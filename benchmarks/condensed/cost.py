@@ -17,6 +17,7 @@ from lumped.build.network_size import FINE
 from lumped.build.pipeline import Meshing, Prepared, field_of, reduced
 from lumped.machine.motor import nominal_coefficients
 from lumped.machine.zones import motor_zones
+from scripts.published import measured_row as row
 
 Row = dict[str, Any]
 
@@ -58,11 +59,3 @@ def counted() -> Iterator[list[int]]:
         yield solves
     finally:
         Solver.factor = own  # type: ignore[method-assign]
-
-
-def row(
-    case: str, measure: str, unit: str, ours: float, peer: float | None = None, peer_name: str | None = None
-) -> Row:
-    """One line of the document; ratio is ours over what is wanted."""
-    out = {"case": case, "measure": measure, "unit": unit, "ours": float(ours), "peer": peer, "peer_name": peer_name}
-    return {**out, "ratio": float(ours) / peer if peer else None, "n": None, "ci95": None}

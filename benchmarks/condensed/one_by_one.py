@@ -9,7 +9,6 @@ furthest off, as in case_network.py.
 
 from __future__ import annotations
 
-import json
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from typing import Any
@@ -18,7 +17,7 @@ import numpy as np
 from case_network import KINDS, PAGE, errors, fields, networks_on
 
 from lumped.build.fixed_coefficients import FixedCoefficients
-from scripts.published import machine_arguments, publish, write_rows
+from scripts.published import kept_rows, machine_arguments, publish, table, write_rows
 
 HEAD = ("machine", "states", "changed", "points", "heated (%)", "that is", "where", "other (%)", "that is", "where")
 DRAWS = range(100, 112)  # seeds
@@ -56,25 +55,23 @@ def rows(machine: str) -> Iterator[dict[str, Any]]:
             yield {**head, "kind": kind, "part": part, "at": at, "unit": "%", "ours": round(percent, 3)}
 
 
-def table(found: Sequence[Mapping[str, Any]]) -> str:
-    lines = [f"| {' | '.join(HEAD)} |", f"|{'---|' * len(HEAD)}"]
+def points_table(found: Sequence[Mapping[str, Any]]) -> str:
+    rows = []
     for heated, other in zip(found[::2], found[1::2], strict=True):
-        head = f"{other['machine']} | {other['states']} | {other['case']} | {other['points']}"
-        each = (f"{r['ours']:.1f} | {r['part']} | {str(r['at']).replace('|', ' on ')}" for r in (heated, other))
-        lines.append(f"| {head} | {' | '.join(each)} |")
-    return "\n".join(lines)
+        each = [(f"{r['ours']:.1f}", r["part"], str(r["at"]).replace("|", " on ")) for r in (heated, other)]
+        rows.append([*(other[key] for key in ("machine", "states", "case", "points")), *each[0], *each[1]])
+    return table(HEAD, rows)
 
 
 def main() -> None:
     given = machine_arguments(__doc__)
-    old = json.loads(given.json.read_text())["rows"] if given.json and given.json.exists() else []
-    found = [row for row in old if row["machine"] not in given.machines]
+    found = kept_rows(given)
     for machine in given.machines:
         found += rows(machine)
-        print(table(found), flush=True)
+        print(points_table(found), flush=True)
         write_rows(given.json, "one_by_one", found)
     if given.page:
-        publish(PAGE, "one-by-one", table(found))
+        publish(PAGE, "one-by-one", points_table(found))
 
 
 if __name__ == "__main__":

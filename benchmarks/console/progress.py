@@ -30,7 +30,7 @@ from itertools import pairwise, product
 from pathlib import Path
 from statistics import median
 
-from scripts.published import publish
+from scripts.published import publish, table
 from thermoscope.console.progress_bar import PREPARING
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -104,16 +104,16 @@ def verdict(rows: Sequence[Row]) -> str:
     return f"{good} of {len(long)} runs of {SHORT_S:.0f} s or more: within a factor two, stood at most {STOOD_S:.0f} s"
 
 
-def table(rows: Sequence[Row]) -> str:
+def runs_table(rows: Sequence[Row]) -> str:
     """Of the docs."""
-    head = ["| command | case | run | took (s) | said over true | stood (s) |", "|---|---|---|---|---|---|"]
-    lines = [
-        f"| {r.command} | {r.case} | {r.run} | {r.took_s:.0f} | {r.ratio:.2f} | {r.stood_s:.0f} |"
+    long = (
+        (r.command, r.case, r.run, f"{r.took_s:.0f}", f"{r.ratio:.2f}", f"{r.stood_s:.0f}")
         for r in rows
         if r.ratio is not None
-    ]
+    )
+    found = table(["command", "case", "run", "took (s)", "said over true", "stood (s)"], long)
     short = sorted({f"{r.command} {r.case} ({r.run})" for r in rows if r.ratio is None})
-    return "\n".join([*head, *lines, "", f"{verdict(rows)}.", *([f"Shorter: {', '.join(short)}."] if short else [])])
+    return "\n".join([found, "", f"{verdict(rows)}.", *([f"Shorter: {', '.join(short)}."] if short else [])])
 
 
 def stages_of(name: str, cache: Path) -> dict[str, float]:
@@ -183,7 +183,7 @@ def main() -> None:
     if options.json:
         options.json.write_text(json.dumps([asdict(row) for row in rows], indent=1), encoding="utf-8")
     if options.page:
-        publish(ROOT / "docs" / "benchmarks.md", "progress", table(rows))
+        publish(ROOT / "docs" / "benchmarks.md", "progress", runs_table(rows))
 
 
 if __name__ == "__main__":

@@ -51,15 +51,8 @@ COMMANDS = {
     "undo": ("model", "undo", "{case}"),
     "improve": ("explain", "improve", "{case}", "--yes", "--most", "1"),
     "new": (
-        "test",
-        "new",
-        "{case}/tests/stand.csv",
-        "{case}/tests/road.csv",
-        "--network",
-        "{case}/network.toml",
-        "--yes",
-        "--out",
-        "{case}/../made",
+        *("test", "new", "{case}/tests/stand.csv", "{case}/tests/road.csv", "--network", "{case}/network.toml"),
+        *("--yes", "--out", "{case}/../made"),
     ),
 }
 SERVE = "serve"

@@ -22,7 +22,7 @@ from extras.bench.live.planning import LENGTHS_MIN, MINUTE, Choice, choices, is_
 from extras.bench.live.settings import Bench, SetPoint, read_bench
 from extras.bench.live.steering import Policy, Steering
 from extras.bench.live.store import BenchError, Store
-from scripts.published import publish
+from scripts.published import publish, table
 from simulated.bench.kinds import KINDS, write_case
 from simulated.bench.plant import Plant, drawn
 from thermoscope.plugin import load_case
@@ -106,12 +106,10 @@ def run(kind: str, seed: int, method: str) -> dict:
     }  # fmt: skip
 
 
-def table(rows: Sequence[dict]) -> str:
+def methods_table(rows: Sequence[dict]) -> str:
     """What is published."""
-    out = [
-        "| method | plants | answers | right | median time (min) | of right ones (min) | limits crossed | CPU (s) |",
-        "|---|---|---|---|---|---|---|---|",
-    ]
+    head = "method | plants | answers | right | median time (min) | of right ones (min) | limits crossed | CPU (s)"
+    out = []
     words = {"steered": "steers itself", "fixed": "fixed plan of three hours", "random": "random set points"}
     for method, called in words.items():
         own = [r for r in rows if r["method"] == method]
@@ -121,11 +119,10 @@ def table(rows: Sequence[dict]) -> str:
             # who names nothing counts as the whole three hours
             spent = [r["minutes"] if r["named"] else 60.0 * HOURS for r in own]
             of_right = f"{np.median([r['minutes'] for r in right]):.0f}" if right else "-"
-            out.append(
-                f"| {called} | {len(own)} | {len(named)} | {len(right)} | {np.median(spent):.0f} | {of_right} | "
-                f"{sum(bool(r['crossed']) for r in own)} | {np.mean([r['cpu_s'] for r in own]):.0f} |"
-            )
-    return "\n".join(out)
+            counts = len(own), len(named), len(right), f"{np.median(spent):.0f}", of_right
+            cost = sum(bool(r["crossed"]) for r in own), f"{np.mean([r['cpu_s'] for r in own]):.0f}"
+            out.append([called, *counts, *cost])
+    return table(head.split(" | "), out)
 
 
 def main() -> None:
@@ -149,9 +146,9 @@ def main() -> None:
                     {k: rows[-1][k] for k in ("kind", "method", "truth", "stop", "minutes", "crossed", "cpu_s")},
                     flush=True,
                 )
-    print(table(rows))
+    print(methods_table(rows))
     if a.page:
-        publish(a.page, "table", table(rows))
+        publish(a.page, "table", methods_table(rows))
 
 
 if __name__ == "__main__":

@@ -24,6 +24,7 @@ from lumped.declarations.network import read_network
 from lumped.integration.simulate import Record, simulate
 from lumped.model.network import Network
 from measured.case import Case, Channel, Model, Test
+from scripts.published import table
 
 SIGMA_K, STEP_S = 0.3, 60.0
 DRIFTS = {  # what the later test has: factors of film, contact and loss
@@ -104,13 +105,14 @@ def main() -> None:
     for seed, kind in product(range(options.pairs), DRIFTS):
         found[kind].append(pair(seed, kind, options.times).document())
     columns = "drift | drawn | changed | cannot tell | equal | part named | cools less | cools as before"
-    print(f"| {columns} |\n|{'---|' * (columns.count('|') + 1)}")
+    rows = []
     for kind, every in found.items():
         verdicts, parts = (Counter(one[key] for one in every) for key in ("verdict", "part"))
         named = ", ".join(f"{p} {n}" for p, n in parts.items() if p) or "-"
-        counts = " | ".join(str(verdicts[word]) for word in ("changed", "cannot tell", "equal"))
-        signs = " | ".join(str(sum(w in one["sentence"] for one in every)) for w in ("cools less", "cools as before"))
-        print(f"| {kind} | {len(every)} | {counts} | {named} | {signs} |")
+        counts = (verdicts[word] for word in ("changed", "cannot tell", "equal"))
+        signs = (sum(w in one["sentence"] for one in every) for w in ("cools less", "cools as before"))
+        rows.append([kind, len(every), *counts, named, *signs])
+    print(table(columns.split(" | "), rows))
     if options.json:
         options.json.write_text(json.dumps(found, indent=1), encoding="utf-8")
 

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
+from scripts.published import table
+
 MEANING = {
     "largest residual": "node of the largest residual",
     "correlation": "plain correlation",
@@ -13,26 +15,27 @@ MEANING = {
 }
 
 
-def markdown(table: Sequence[dict]) -> str:
+def markdown(found: Sequence[dict]) -> str:
     """Rows of `score.rows` as two tables."""
-    lines = ["| | of | came out | 95 % | wanted |", "|---|---|---|---|---|"]
-    for r in [r for r in table if "target" in r]:
-        rate = f"{percent(r['ours'])} | {span(r['ci95'])} | {aim(r['target'])}".rstrip()
-        lines.append(f"| {r['case']}: {r['measure']} | {r['n']} | {rate} |")
-    against, own = [r for r in table if "peer" in r], [r for r in table if r.get("fold")]
-    parts = [lines, guesses(against) if against else [], folds(own) if own else []]
-    return "\n\n".join("\n".join(p) for p in parts if p)
+    rates = [
+        (f"{r['case']}: {r['measure']}", r["n"], percent(r["ours"]), span(r["ci95"]), aim(r["target"]))
+        for r in found
+        if "target" in r
+    ]
+    against, own = [r for r in found if "peer" in r], [r for r in found if r.get("fold")]
+    parts = [table(["", "of", "came out", "95 %", "wanted"], rates)]
+    return "\n\n".join([*parts, *([guesses(against)] if against else []), *([folds(own)] if own else [])])
 
 
-def folds(own: Sequence[dict]) -> list[str]:
+def folds(own: Sequence[dict]) -> str:
     """One line per measure, one column per kind and one for all."""
     kinds, found = list(dict.fromkeys(r["case"] for r in own)), {(r["measure"], r["case"]): r for r in own}
-    lines = [f"| | {' | '.join(kinds)} |", f"|---|{'---|' * len(kinds)}"]
+    rows = []
     for measure in dict.fromkeys(r["measure"] for r in own):
         told = [entry(found.get((measure, kind))) for kind in kinds]
         aims = {aim(r.get("fold_target", "")) for (m, _), r in found.items() if m == measure} - {""}
-        lines.append(f"| {' '.join([measure, *(f'({a})' for a in aims)])} | {' | '.join(told)} |")
-    return lines
+        rows.append([" ".join([measure, *(f"({a})" for a in aims)]), *told])
+    return table(["", *kinds], rows)
 
 
 def entry(row: dict | None) -> str:
@@ -42,24 +45,21 @@ def entry(row: dict | None) -> str:
     return f"{percent(row['ours'])} of {row['n']}" if "ci95" in row else f"{row['ours']:.2f}"
 
 
-def diagram(table: Sequence[tuple[float, float, int, float, float]]) -> list[str]:
+def diagram(bins: Sequence[tuple[float, float, int, float, float]]) -> str:
     """A reliability diagram as a table: what was said, and how much of it was right."""
-    lines = ["| said with | statements | mean | right |", "|---|---|---|---|"]
-    return lines + [
-        f"| {percent(a)} to {percent(b)} | {n} | {percent(p)} | {percent(right)} |" for a, b, n, p, right in table
-    ]
+    rows = ((f"{percent(a)} to {percent(b)}", n, percent(p), percent(right)) for a, b, n, p, right in bins)
+    return table(["said with", "statements", "mean", "right"], rows)
 
 
-def guesses(against: Sequence[dict]) -> list[str]:
+def guesses(against: Sequence[dict]) -> str:
     """One line per method, one column per measure, which names its number of cases."""
     asked = {(r["case"], r["measure"]): r for r in against}
     heads = [f"{measure.split(', ')[-1]} ({r['n']})" for (_, measure), r in asked.items()]
-    lines = [f"| method | {' | '.join(heads)} |", f"|---|{'---|' * len(asked)}"]
-    lines.append(f"| this diagnosis | {' | '.join(percent(r['ours']) for r in asked.values())} |")
+    rows = [["this diagnosis", *(percent(r["ours"]) for r in asked.values())]]
     for name in dict.fromkeys(r["peer_name"] for r in against):
         theirs = {(r["case"], r["measure"]): r["peer"] for r in against if r["peer_name"] == name}
-        lines.append(f"| {MEANING[name]} | {' | '.join(percent(theirs[key]) for key in asked)} |")
-    return lines
+        rows.append([MEANING[name], *(percent(theirs[key]) for key in asked)])
+    return table(["method", *heads], rows)
 
 
 def aim(target: str) -> str:

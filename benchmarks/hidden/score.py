@@ -91,17 +91,12 @@ def contest(pairs: Iterable[Pair]) -> list[dict]:
 
 
 def _against(group: str, measure: str, name: str, ours: tuple, their: tuple) -> dict:
-    return {
-        "case": group,
-        "measure": measure,
-        "unit": "1",
-        "ours": ours[0],
-        "peer": their[0],
-        "peer_name": name,
-        "n": ours[1],
-        "ci95": list(ours[2]),
-        "peer_ci95": list(their[2]),
-    }
+    return _row(group, measure, *ours, peer=their[0], peer_name=name, peer_ci95=list(their[2]))
+
+
+def _row(group: str, measure: str, value: float, n: int, interval: Sequence[float], **more: Any) -> dict:
+    """A rate or share of n cases with its interval."""
+    return {"case": group, "measure": measure, "unit": "1", "ours": value, "n": n, "ci95": list(interval), **more}
 
 
 def rows(pairs: Iterable[Pair]) -> list[dict]:
@@ -110,17 +105,7 @@ def rows(pairs: Iterable[Pair]) -> list[dict]:
     for measure, target, group, hits in promises(pairs):
         value, n, interval = judge.rate(hits)
         if n:
-            out.append(
-                {
-                    "case": group,
-                    "measure": measure,
-                    "unit": "1",
-                    "ours": value,
-                    "n": n,
-                    "ci95": list(interval),
-                    "target": target,
-                }
-            )
+            out.append(_row(group, measure, value, n, interval, target=target))
     cost = [b["cpu_s"] for _, b in pairs]
     time = {"case": "diagnose", "measure": "time, median", "unit": "s", "ours": float(np.median(cost or [np.nan]))}
     return [*out, *fall(pairs), *contest(pairs), *folds(pairs), time]
@@ -191,14 +176,5 @@ def fall(pairs: Iterable[Pair]) -> list[dict]:
     if not share:
         return []
     low, high = (share[int(k)] for k in binom.ppf((0.025, 0.975), len(share), 0.5).clip(0, len(share) - 1))
-    return [
-        {
-            "case": "one effect",
-            "measure": "held-out error, share of possible fall",
-            "unit": "1",
-            "ours": float(np.median(share)),
-            "n": len(share),
-            "ci95": [low, high],
-            "target": ">= 0.85",
-        }
-    ]
+    measure, value = "held-out error, share of possible fall", float(np.median(share))
+    return [_row("one effect", measure, value, len(share), (low, high), target=">= 0.85")]

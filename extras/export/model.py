@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from extras.export.products import Product, Sum
+from extras.export.products import Sum
 from extras.export.tables import Ranges, factors
 from thermoscope import InputError, Network, plugin as th
 
@@ -131,11 +131,10 @@ def _reaches(signals: Sequence[Signal]) -> Ranges:
 
 def _factors(every: th.Assembly, live: NDArray[np.bool_], acting: th.Array, reach: Ranges) -> list[Sum]:
     pairs = [(p, x) for p, x, on in zip(every.patterns, acting, live, strict=True) if on]
-    return [tuple(_times(one, float(x)) for one in factors(p.name, p.law, reach)) for p, x in pairs]
-
-
-def _times(one: Product, by: float) -> Product:
-    return replace(one, coefficient=by * one.coefficient)
+    return [
+        tuple(replace(one, coefficient=float(x) * one.coefficient) for one in factors(p.name, p.law, reach))
+        for p, x in pairs
+    ]
 
 
 def _range(reference: th.Reference, name: str) -> tuple[float | None, float | None]:

@@ -172,11 +172,16 @@ def rod(radius: float, length: float, round_m: float = 0.0, sections: int = 24) 
     return revolved(Polygon([(0, 0), (radius, 0), (radius, length - k), (radius - k, length), (0, length)]), sections)
 
 
-def bolt(thread: float) -> Shape:
-    """Hexagon head on a washer, z outwards (m): proportions of ISO 4017 and ISO 7089."""
+def hexagon(radius: float) -> Polygon:
+    """Of a nut or a head, by the radius of its corners (m)."""
     from shapely import Polygon
 
     t = np.pi / 3 * np.arange(6)
-    head = Polygon(1.5 * thread / np.sqrt(3) * np.stack([np.cos(t), np.sin(t)], axis=1))
+    return Polygon(radius * np.stack([np.cos(t), np.sin(t)], axis=1))
+
+
+def bolt(thread: float) -> Shape:
+    """Hexagon head on a washer, z outwards (m): proportions of ISO 4017 and ISO 7089."""
+    head = hexagon(1.5 * thread / np.sqrt(3))
     washer = rod(1.1 * thread, 0.16 * thread)
     return joined([washer, extruded(head, 0.16 * thread, 0.8 * thread, 0.06 * thread)])

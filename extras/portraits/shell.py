@@ -6,7 +6,7 @@ import numpy as np
 import shapely
 
 from extras.portraits.body import Body, Finish
-from extras.portraits.making import bolt, box, extruded, oval, revolved, rod, rounded, swept
+from extras.portraits.making import bolt, box, extruded, hexagon, oval, revolved, rod, rounded, swept
 from extras.portraits.outlines import Outlines
 from extras.portraits.shape import Shape, joined
 from thermoscope import plugin as th
@@ -34,8 +34,7 @@ def _pipe(o: Outlines, part: th.Part) -> list[Body] | None:
     if not isinstance(one, th.Rod):
         return None
     r, angle, z = one.diameter / 2, one.angle, one.z
-    t = np.pi / 3 * np.arange(6)
-    nut = extruded(shapely.Polygon(1.35 * r * np.stack([np.cos(t), np.sin(t)], axis=1)), 0.0, 0.8 * r, 0.08 * r)
+    nut = extruded(hexagon(1.35 * r), 0.0, 0.8 * r, 0.08 * r)
     hose = _hose(0.95 * r, 6.0 * r)
     return [
         Body(part.name, Finish.STEEL, rod(r, one.outer - one.inner, 0.0, 48).outward(angle, one.inner, z)),
@@ -123,10 +122,7 @@ def _terminal_box(part: th.Part, reach: float, inner: float, span: tuple[float, 
 
 def _gland(radius: float, at: tuple[float, float, float], height: float, z: float) -> list[tuple[Finish, Shape]]:
     """A nut and a cable that leaves the box sideways and hangs down; `at` (m) on the box's side."""
-    t = np.pi / 3 * np.arange(6)
-    nut = extruded(
-        shapely.Polygon(1.3 * radius * np.stack([np.cos(t), np.sin(t)], axis=1)), 0.0, 1.2 * radius, 0.1 * radius
-    )
+    nut = extruded(hexagon(1.3 * radius), 0.0, 1.2 * radius, 0.1 * radius)
     t = np.linspace(0.0, np.pi / 3, 10)
     path = np.stack([5 * radius * np.sin(t), np.zeros_like(t), -5 * radius * (1 - np.cos(t))], axis=1)
     cable = swept(path, np.tile([0.0, 1.0, 0.0], (len(t), 1)), oval(1.3 * radius, 1.3 * radius, 16, 2.0))

@@ -216,21 +216,12 @@ PUBLISHED_W = {"bench": ("pmsm-m1", 222, 0), "m2": ("pmsm-m2", 246, 77), "m3": (
 
 def constructive() -> Section:
     """The grey part of table II: the machines as their files have them, and the losses of their tests."""
-    head = (
-        "machine",
-        "slots / poles",
-        "length (mm)",
-        "conductors per slot",
-        "copper loss, published (W)",
-        "here (W)",
-        "magnetic loss, published (W)",
-        "here (W)",
-    )
-    table: list[tuple[Any, ...]] = [head]
+    losses = ("copper loss, published (W)", "here (W)", "magnetic loss, published (W)", "here (W)")
+    table: list[tuple[Any, ...]] = [("machine", "slots / poles", "length (mm)", "conductors per slot", *losses)]
     for test, (name, copper, magnetic) in PUBLISHED_W.items():
         machine, path = load_machine(name), paths()[test]
-        g, losses = machine.geometry, machine.sections["losses"]
-        ours = losses["iron"]["hysteresis_W"] + losses["iron"]["eddy_W"] + losses["magnet"]["P_W"] if magnetic else 0
+        g, own = machine.geometry, machine.sections["losses"]
+        ours = own["iron"]["hysteresis_W"] + own["iron"]["eddy_W"] + own["magnet"]["P_W"] if magnetic else 0
         size = (f"{1e3 * g.frame.length:.0f}", machine.sections["ratings"]["conductors_per_slot"])
         watts = (copper, f"{path.P_w:.0f}", magnetic, f"{ours:.0f}")
         table.append((name.removeprefix("pmsm-").upper(), f"{g.stator.slots} / {g.rotor.poles}", *size, *watts))
@@ -248,16 +239,8 @@ def _with_interval(test: str, way: str) -> str:
 
 def wrong_base() -> Section:
     """Every base held against every test."""
-    head = (
-        "test",
-        "base",
-        "sheet",
-        "deviance over the best",
-        "",
-        "through the foot (W)",
-        "convection (W)",
-        "radiation (W)",
-    )
+    ways = ("through the foot (W)", "convection (W)", "radiation (W)")
+    head = ("test", "base", "sheet", "deviance over the best", "", *ways)
     rows = [
         (
             h.test,

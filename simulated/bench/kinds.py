@@ -6,17 +6,9 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 
-HIDDEN = (
-    "nothing",
-    "contact@fit",
-    "coupling@winding|housing",
-    "convection.constant@housing",
-    "blockage@housing",
-    "windage@rotor",
-    "copper.ac@winding",
-    "loss.rotor.load@rotor",
-    "gap.convection@core|rotor",
-)
+HIDDEN: tuple[str, ...] = ("nothing", "contact@fit", "coupling@winding|housing")
+HIDDEN += ("convection.constant@housing", "blockage@housing", "windage@rotor")
+HIDDEN += ("copper.ac@winding", "loss.rotor.load@rotor", "gap.convection@core|rotor")
 
 
 @dataclass(frozen=True)

@@ -19,15 +19,8 @@ from geom.description.part import Part, Prism, fluid
 from geom.description.profile import Loop, Profile, Vertex
 from geom.meshing.mesh import Contact, NamedMesh, Patch
 
-ROTOR = (
-    "shaft",
-    "rotor.core",
-    "slot.liner",
-    "winding.armature",
-    "winding.armature.left",
-    "winding.armature.right",
-    "commutator",
-)
+ROTOR: tuple[str, ...] = ("shaft", "rotor.core", "slot.liner", "winding.armature")
+ROTOR += ("winding.armature.left", "winding.armature.right", "commutator")
 JOINTS = (("bearing.left", "shaft"), ("bearing.right", "shaft"))
 
 

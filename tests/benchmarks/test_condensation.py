@@ -65,7 +65,7 @@ def rows(machine, mean):
 
 
 def test_table_has_a_line_per_machine():
-    lines = condensation.table([*rows("b", 0.2), *rows("a", 0.1)]).splitlines()
+    lines = condensation.accuracy_table([*rows("b", 0.2), *rows("a", 0.1)]).splitlines()
     assert lines[2].startswith("| a | 50000 | 300 | 0.1 / 0.2 / 0.3 |")
     assert lines[3].startswith("| b | 50000 | 300 | 0.2 / 0.4 / 0.6 |")
 

@@ -95,7 +95,7 @@ def test_reliability_of_a_perfect_and_of_a_boastful_answer():
     boast = answer(("d@e", 0.97), ("nothing", 0.03))
     assert odds.calibration_error([(ONE, boast)]) == pytest.approx(0.97)
     assert odds.reliability([(ONE, honest), (ONE, boast)]) == [(0.8, 1.0, 2, pytest.approx(0.97), 0.5)]
-    assert diagram([(0.8, 1.0, 2, 0.97, 0.5)])[-1] == "| 80 % to 100 % | 2 | 97 % | 50 % |"
+    assert diagram([(0.8, 1.0, 2, 0.97, 0.5)]).splitlines()[-1] == "| 80 % to 100 % | 2 | 97 % | 50 % |"
 
 
 def test_the_places_of_an_exchange_have_no_order():

@@ -30,7 +30,7 @@ def test_the_table_holds_the_last_step_against_the_best_yardstick():
     none = bench.Row("none", fault="no column is a temperature")
     assert np.allclose(good.ratios, (1.1, 1.0))
     assert np.isnan(none.ratios).all()
-    lines = bench.table([good, none]).splitlines()
+    lines = bench.recordings_table([good, none]).splitlines()
     cells = [c.strip() for c in lines[2].replace("\\|", "/").strip("|").split("|")]
     assert cells == [
         "good",

@@ -9,6 +9,8 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 
 BROWSERS = ("chromium", "chromium-browser", "google-chrome", "microsoft-edge")
+QUIET = ["--headless", "--disable-gpu", "--no-sandbox", "--no-first-run", "--disable-extensions"]
+QUIET += ["--no-pdf-header-footer"]
 LONGEST_S = 180  # a browser that needs more hangs
 
 
@@ -27,21 +29,6 @@ def write_pdf(page: Path) -> Path | None:
 def _printed(browser: str, page: Path, pdf: Path) -> Path | None:
     """By a browser without a window, its profile in a folder that is thrown away; None if it fails."""
     with TemporaryDirectory() as profile:
-        process = subprocess.run(
-            [
-                browser,
-                "--headless",
-                "--disable-gpu",
-                "--no-sandbox",
-                f"--user-data-dir={profile}",
-                "--no-first-run",
-                "--disable-extensions",
-                "--no-pdf-header-footer",
-                f"--print-to-pdf={pdf.resolve()}",
-                page.resolve().as_uri(),
-            ],
-            capture_output=True,
-            timeout=LONGEST_S,
-            check=False,
-        )
+        files = [f"--user-data-dir={profile}", f"--print-to-pdf={pdf.resolve()}", page.resolve().as_uri()]
+        process = subprocess.run([browser, *QUIET, *files], capture_output=True, timeout=LONGEST_S, check=False)
     return pdf if process.returncode == 0 and pdf.is_file() else None

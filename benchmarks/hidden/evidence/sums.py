@@ -19,6 +19,7 @@ from hidden.user import case_of
 from lumped.model.multipliers import parameter_values
 from measured.case import Case
 from measured.doubt import TABLE, USUAL
+from scripts.published import table
 from validation.calibration.calibrate import CachedSegments, Fit, InnerProduct, calibrated, minimise
 from validation.calibration.model_error import ModelError, machine_rise, model_error
 from validation.inference.evidence import log_evidence
@@ -86,12 +87,8 @@ def markdown(cases: Sequence[Mapping[str, Any]]) -> list[str]:
     """A line per kind left out."""
     kinds = sorted({c["kind"] for c in cases})
     by_kind = {kind: [c for c in cases if c["kind"] == kind] for kind in kinds}
-    lines = [
-        "| kind left out | sound machines | bound that the others ask for | nats it costs each of this kind |",
-        "|---|---|---|---|",
-    ]
-    for kind in kinds:
-        asked = bound([c for c in cases if c["kind"] != kind])
-        lines.append(f"| {kind} | {len(by_kind[kind])} | {100 * asked:g} % | {mean_cost(by_kind[kind], asked):.1f} |")
+    asked = {kind: bound([c for c in cases if c["kind"] != kind]) for kind in kinds}
+    head = ("kind left out", "sound machines", "bound that the others ask for", "nats it costs each of this kind")
+    rows = ((k, len(by_kind[k]), f"{100 * x:g} %", f"{mean_cost(by_kind[k], x):.1f}") for k, x in asked.items())
     costs = ", ".join(f"{mean_cost(cases, s):.1f} at {100 * s:g} %" for s in SHARES[1:])
-    return [*lines, "", f"Mean cost over all kinds in nats: `{costs}`. Used: {100 * USED:g} %."]
+    return [table(head, rows), "", f"Mean cost over all kinds in nats: `{costs}`. Used: {100 * USED:g} %."]

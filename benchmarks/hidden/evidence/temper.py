@@ -16,6 +16,7 @@ import numpy as np
 
 from hidden.odds import brier, calibration_error, in_set, nats, surely_another
 from measured.doubt import TEMPER
+from scripts.published import table
 
 SHARPNESS = TEMPER["sharpness"].share
 SHARPER: Sequence[float] = (0.8, 1.0, 1.1, 1.25, 1.4, 1.6, 2.0)
@@ -59,13 +60,9 @@ def sharpened(answer: Mapping[str, Any], power: float, asked: float = SHARPNESS)
     return {**answer, "odds": rows, "p_nothing": sum(o["probability"] for o in rows if o["hypothesis"] == "nothing")}
 
 
-def sharpness_folds(cases: Sequence[Pair]) -> list[str]:
+def sharpness_folds(cases: Sequence[Pair]) -> str:
     """One line per kind: the power that all others ask for, and the scores of this kind at one and at that power."""
-    lines = [
-        "| kind left out | cases | power of the others | log score at 1 | at that power | calibration error at 1 "
-        "| at that power |",
-        "|---|---|---|---|---|---|---|",
-    ]
+    rows = []
 
     def score(own: Sequence[Pair], power: float) -> float:
         return float(np.mean([nats(label, sharpened(answer, power)) for label, answer in own]))
@@ -77,14 +74,16 @@ def sharpness_folds(cases: Sequence[Pair]) -> list[str]:
         plain, then = ([(label, sharpened(answer, x)) for label, answer in own] for x in (1.0, power))
         every[False] += plain
         every[True] += then
-        lines.append(_row(kind, f"{power:g}", plain, then))
-    return [*lines, _row("all", "", every[False], every[True])]
+        rows.append(_row(kind, f"{power:g}", plain, then))
+    both = ("log score at 1", "at that power", "calibration error at 1", "at that power")
+    every_row = _row("all", "", every[False], every[True])
+    return table(["kind left out", "cases", "power of the others", *both], [*rows, every_row])
 
 
-def _row(kind: str, power: str, plain: Sequence[Pair], then: Sequence[Pair]) -> str:
+def _row(kind: str, power: str, plain: Sequence[Pair], then: Sequence[Pair]) -> list[str]:
     logs = [f"{np.mean([nats(*c) for c in cases]):.2f}" for cases in (plain, then)]
     errors = [f"{calibration_error(cases):.2f}" for cases in (plain, then)]
-    return "| " + " | ".join([kind, str(len(plain)), power, *logs, *errors]) + " |"
+    return [kind, str(len(plain)), power, *logs, *errors]
 
 
 def log_score(cases: Sequence[Pair], temper: Temper) -> float:
@@ -120,15 +119,12 @@ def folds(cases: Sequence[Pair]) -> list[dict[str, Any]]:
     return out
 
 
-def markdown(rows: Sequence[Mapping[str, Any]]) -> list[str]:
+def markdown(rows: Sequence[Mapping[str, Any]]) -> str:
     """The folds as a table."""
-    lines = [
-        "| kind left out | cases | temper of the others, and per nat | log score at 1 | at that temper | Brier "
-        "| truth in the 90 % set | sure and wrong |",
-        "|---|---|---|---|---|---|---|---|",
-    ]
-    return lines + [
-        f"| {r['kind']} | {r['n']} | {r['temper'][0]:g} + {r['temper'][1]:g} | {r['untempered']:.2f} "
-        f"| {r['log_score']:.2f} | {r['brier']:.3f} | {100 * r['in_set']:.0f} % | {100 * r['sure_and_wrong']:.0f} % |"
-        for r in rows
-    ]
+    cells = []
+    for r in rows:
+        scores = f"{r['untempered']:.2f}", f"{r['log_score']:.2f}", f"{r['brier']:.3f}"
+        shares = (f"{100 * r[key]:.0f} %" for key in ("in_set", "sure_and_wrong"))
+        cells.append([r["kind"], r["n"], "{:g} + {:g}".format(*r["temper"]), *scores, *shares])
+    scores = ("log score at 1", "at that temper", "Brier", "truth in the 90 % set", "sure and wrong")
+    return table(["kind left out", "cases", "temper of the others, and per nat", *scores], cells)

@@ -2,15 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import NDArray
 
+from hidden.truth.body import Body, Joint, Skeleton, skeleton
 from hidden.truth.change import Change
 from hidden.truth.draw import Draw
-from hidden.truth.machine import Machine
+from hidden.truth.machine import Machine, Term
 from hidden.truth.profile import air, between, fine_times, log_times
 from hidden.truth.readings import Logger, Sensor, read, recorded, with_gaps
 
@@ -52,9 +53,15 @@ class Hidden:
     least: float = 0.0
 
 
-@dataclass(frozen=True)
+def no_tempco(loss: str) -> tuple[Edit, ...]:
+    """The user's network has a loss of copper that does not follow its temperature."""
+    return ((("losses", loss, "alpha_1_K"), 0.0),)
+
+
+@dataclass(frozen=True, kw_only=True)
 class Archetype:
-    """A kind. thermometers : where they really are, by the internal name of the place;  baths : measured boundaries
+    """A kind. bodies, joints, terms : of a machine, drawn around its drawing
+    thermometers : where they really are, by the internal name of the place;  baths : measured boundaries
 
     missing : effects that can be hidden;  passing : those that can hold in one test or for a while
     foreign, faults, absorbed : (label, change from a seed) of the other classes;  tense : priors that can be wrong
@@ -64,21 +71,28 @@ class Archetype:
     """
 
     name: str
-    build: Callable[[Draw, Change], Machine]
+    bodies: Callable[[Draw], Sequence[Body]]
+    joints: Callable[[Draw], Sequence[Joint]]
+    terms: Sequence[Callable[[Skeleton, Draw], Sequence[Term]]]
     plans: tuple[Plan, ...]
     thermometers: Mapping[str, Spot]
-    baths: Mapping[str, Spot]
     missing: tuple[Hidden, ...]
     faults: Mapping[str, Callable[[int], Change]]
     foreign: Mapping[str, Callable[[int], Change]]
     absorbed: Mapping[str, Callable[[int], Change]]
     tense: Mapping[str, float]
     parts: Mapping[str, str]
+    baths: Mapping[str, Spot] = field(default_factory=dict)
     passing: tuple[Hidden, ...] = ()
     logger: Logger = field(default_factory=Logger)
     called: Mapping[str, str] = field(default_factory=dict)
     words: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
     spans: Mapping[str, tuple[float, float]] = field(default_factory=dict)
+
+    def build(self, d: Draw, change: Change) -> Machine:
+        """The machine of one draw with what is hidden in it."""
+        s = skeleton([*self.bodies(d), *change.bodies], [*self.joints(d), *change.joints])
+        return Machine(s, (*(term for part in self.terms for term in part(s, d)), *change.terms(s)))
 
 
 @dataclass(frozen=True)

@@ -23,5 +23,11 @@ class Draw:
         drawn = float(np.clip(self.stream(key).standard_normal(), -2.0, 2.0))
         return float(np.exp(self.spread * sd * drawn)) * self.times.get(key, 1.0)
 
+    def capacity(self, key: str, value: float, sd: float = 0.05) -> float:
+        return value * self.factor(f"capacity.{key}", sd)
+
+    def conductance(self, key: str, value: float, sd: float = 0.25) -> float:
+        return value * self.factor(key, sd)
+
     def between(self, key: str, low: float, high: float) -> float:
         return float(self.stream(key).uniform(low, high))

@@ -17,9 +17,9 @@ Array = NDArray[np.float64]
 METER = 0.04  # twice what shunts and meters of a bench may be off by: less is no wrong range
 
 
-def tapered(n: int, slope: float = 0.6) -> Array:
+def tapered(n: int) -> Array:
     """Shares that fall along a body and sum to 1."""
-    w = 1.0 + slope * np.linspace(0.5, -0.5, n)
+    w = 1.0 + 0.6 * np.linspace(0.5, -0.5, n)
     return np.asarray(w / w.sum())
 
 
@@ -60,13 +60,18 @@ def bridge(name: str, a: float, one: str, other: str, spots: tuple[float, float]
     return Change(joints=(Joint(f"hidden {name}", one, other, a, spots, 5e-4),))
 
 
+def made_in(body: str, watts: Callable[[Array, Mapping[str, float]], Array]) -> Change:
+    """Loss (W) in a body, unevenly spread."""
+
+    def terms(s: Skeleton) -> tuple[Loss, ...]:
+        cells = s.cells(body)
+        return (Loss("hidden loss", cells, tapered(cells.size), watts),)
+
+    return Change(terms=terms)
+
+
 def heating(
-    body: str,
-    a: float,
-    speed: tuple[float, float] = (0, 0),
-    current: tuple[float, float] = (0, 0),
-    input_A: str = "current_A",
-    fade: float = 0.0,
+    body: str, a: float, speed: tuple[float, float] = (0, 0), current: tuple[float, float] = (0, 0), fade: float = 0.0
 ) -> Change:
     """Extra loss a (W) at 1000 rpm and 100 A.
 
@@ -75,14 +80,10 @@ def heating(
 
     def watts(T: Array, u: Mapping[str, float]) -> Array:
         n = 1.5 ** speed[0] * (abs(u["speed_rpm"]) / 1500.0) ** speed[1] if speed[0] else 1.0
-        amps = (abs(u[input_A]) / 100.0) ** current[1] if current[1] else 1.0
+        amps = (abs(u["current_A"]) / 100.0) ** current[1] if current[1] else 1.0
         return a * n * amps * (1.0 - fade * (T - 60.0))
 
-    def terms(s: Skeleton) -> tuple[Loss, ...]:
-        cells = s.cells(body)
-        return (Loss("hidden loss", cells, tapered(cells.size), watts),)
-
-    return Change(terms=terms)
+    return made_in(body, watts)
 
 
 def stirred_gap(a: float, rotor: str, stator: str) -> Change:
@@ -126,25 +127,20 @@ def joined(body: str, a: float) -> Change:
     return Change(terms=terms, signals={"joined_K": lambda time: -30.0 * np.expm1(-time / 1500.0)})
 
 
-def warming(body: str, P20: float, a: float, input_A: str = "current_A") -> Change:
+def warming(body: str, P20: float, a: float) -> Change:
     """What a copper loss of P20 (W) at 20 degC and 1 A gains with temperature, a per K."""
 
     def terms(s: Skeleton) -> tuple[Loss, ...]:
         cells = s.cells(body)
-        gained = lambda T, u: P20 * u[input_A] ** 2 * a * (T - 20.0)  # noqa: E731
+        gained = lambda T, u: P20 * u["current_A"] ** 2 * a * (T - 20.0)  # noqa: E731
         return (Loss("resistance that follows", cells, np.full(cells.size, 1.0 / cells.size), gained),)
 
     return Change(terms=terms)
 
 
-def switched(body: str, a: float, switch: str, power: float = 1.0) -> Change:
+def switched(body: str, a: float, switch: str) -> Change:
     """Heat of a W while an input is on."""
-
-    def terms(s: Skeleton) -> tuple[Loss, ...]:
-        cells = s.cells(body)
-        return (Loss("while on", cells, tapered(cells.size), lambda T, u: a * u[switch] ** power),)
-
-    return Change(terms=terms)
+    return made_in(body, lambda T, u: a * u[switch])
 
 
 def blown(body: str, a: float, switch: str) -> Change:

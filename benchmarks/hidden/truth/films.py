@@ -5,6 +5,9 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from hidden.truth.body import Skeleton
+from hidden.truth.machine import Film, Inputs
+
 Array = NDArray[np.float64]
 G0, SIGMA, ZERO = 9.81, 5.670374e-8, 273.15
 
@@ -20,19 +23,21 @@ def air(T: Array) -> tuple[Array, Array, Array, float]:
 
 
 def cylinder_still(T: Array, Ta: Array, D: float) -> Array:
-    """Horizontal cylinder in still air: Churchill and Chu 1975."""
-    k, nu, beta, Pr = air(0.5 * (T + Ta))
-    Ra = G0 * beta * np.abs(T - Ta) * D**3 / nu**2 * Pr
-    Nu = (0.60 + 0.387 * Ra ** (1 / 6) / (1.0 + (0.559 / Pr) ** (9 / 16)) ** (8 / 27)) ** 2
-    return Nu * k / D
+    """Horizontal cylinder in still air."""
+    return _churchill_chu(T, Ta, D, 0.60, 0.559)
 
 
 def plate_still(T: Array, Ta: Array, H: float) -> Array:
-    """Vertical plate in still air: Churchill and Chu 1975."""
+    """Vertical plate in still air."""
+    return _churchill_chu(T, Ta, H, 0.825, 0.492)
+
+
+def _churchill_chu(T: Array, Ta: Array, L: float, least: float, by_Pr: float) -> Array:
+    """Churchill and Chu 1975."""
     k, nu, beta, Pr = air(0.5 * (T + Ta))
-    Ra = G0 * beta * np.abs(T - Ta) * H**3 / nu**2 * Pr
-    Nu = (0.825 + 0.387 * Ra ** (1 / 6) / (1.0 + (0.492 / Pr) ** (9 / 16)) ** (8 / 27)) ** 2
-    return Nu * k / H
+    Ra = G0 * beta * np.abs(T - Ta) * L**3 / nu**2 * Pr
+    Nu = (least + 0.387 * Ra ** (1 / 6) / (1.0 + (by_Pr / Pr) ** (9 / 16)) ** (8 / 27)) ** 2
+    return Nu * k / L
 
 
 def wind(T: Array, Ta: Array, v: Array, L: float) -> Array:
@@ -57,6 +62,17 @@ def gap(T: Array, rpm: float, r: float, g: float) -> Array:
     Ta = np.abs(rpm) * np.pi / 30.0 * np.sqrt(r) * g**1.5 / nu
     Nu = (2.0**8 + (0.212 * Ta**0.63 * Pr**0.27) ** 8) ** (1 / 8)
     return np.asarray(Nu * k / (2.0 * g))
+
+
+def across_gap(s: Skeleton, rotor: str, stator: str, area: float, r: float, g: float) -> Film:
+    """The gap's film between the cells of two bodies that face each other; its area (m2) in all."""
+    inner, outer = s.cells(rotor), s.cells(stator)
+    n = min(inner.size, outer.size)
+
+    def h(T: Array, Ta: Array, u: Inputs) -> Array:
+        return gap(0.5 * (T + Ta), u["speed_rpm"], r, g)
+
+    return Film("gap", inner[:n], outer[:n], np.full(n, area / n), h)
 
 
 def stirred(rpm: float, r: float, k1: float, k2: float) -> float:

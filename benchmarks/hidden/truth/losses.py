@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Mapping
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -9,9 +11,14 @@ Array = NDArray[np.float64]
 ALPHA = 0.00393
 
 
-def copper(R20: float, current: float, T: Array, skin: float = 0.0, rpm: float = 0.0) -> Array:
-    """Per-cell loss of a winding of 3 R20 in all; skin: extra share at 1000 rpm, growing with the square."""
-    return 3.0 * R20 * current**2 * (1.0 + ALPHA * (T - 20.0)) * (1.0 + skin * (rpm / 1000.0) ** 2)
+def copper(R20: float, current: float, T: Array) -> Array:
+    """Per-cell loss of a winding of 3 R20 in all."""
+    return 3.0 * R20 * current**2 * (1.0 + ALPHA * (T - 20.0))
+
+
+def joule(R20: float, input_A: str = "current_A") -> Callable[[Array, Mapping[str, float]], Array]:
+    """Loss of a winding under one of the inputs."""
+    return lambda T, u: copper(R20, u[input_A], T)
 
 
 def bertotti(T: Array, f: float, hysteresis: float, eddy: float, excess: float) -> Array:
@@ -20,6 +27,6 @@ def bertotti(T: Array, f: float, hysteresis: float, eddy: float, excess: float) 
     return hysteresis * f + eddy * f**2 / (1.0 + 0.001 * (T - 40.0)) + excess * f**1.5
 
 
-def friction(T: Array, f: float, P: float, thinning: float = 0.006) -> Array:
-    """Grease-lubricated bearing: P f^1.1 at 40 degC, less as the grease thins."""
-    return P * f**1.1 * np.exp(-thinning * (T - 40.0))
+def bearing(P: float, rated_rpm: float, thinning: float = 0.006) -> Callable[[Array, Mapping[str, float]], Array]:
+    """Grease-lubricated: P f^1.1 at 40 degC, f relative to the rated speed; less as the grease thins (per K)."""
+    return lambda T, u: P * (abs(u["speed_rpm"]) / rated_rpm) ** 1.1 * np.exp(-thinning * (T - 40.0))

@@ -46,6 +46,22 @@ class Film:
 
 
 @dataclass(frozen=True)
+class Stream:
+    """A fluid through cells one after the other, from an inlet whose temperature is an input.
+
+    mcp : heat capacity flow (W/K) from (T cells, inputs)
+    """
+
+    cells: NDArray[np.int64]
+    inlet: str
+    mcp: Callable[[Array, Inputs], float]
+
+    def into(self, q: Array, T: Array, u: Inputs) -> None:
+        before = np.concatenate([[u[self.inlet]], T[self.cells[:-1]]])
+        q[self.cells] += self.mcp(T[self.cells], u) * (before - T[self.cells])
+
+
+@dataclass(frozen=True)
 class Loss:
     """Heat made in cells: watts(T cells, inputs), shared by `share` (k,)."""
 

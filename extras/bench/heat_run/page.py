@@ -63,13 +63,11 @@ def tables(document: Document) -> dict[str, th.Table]:
         "limits": th.Table.of(
             "Limits and corrections", document["limits"], "what | clause | effect | limit (K)=limit_K"
         ),
-        "steps": th.Table.of("What was measured when", document["steps"], steps, state=_state),
+        "steps": th.Table.of(
+            "What was measured when", document["steps"], steps, state=lambda step: step["state"].replace("to do", "")
+        ),
         "signature": th.Table("Signed", ["what", "value"], signature),
     }
-
-
-def _state(step: Document) -> str:
-    return "" if step["state"] == "to do" else str(step["state"])
 
 
 def _with(value: float | None, unit: str) -> str:

@@ -1,1 +1,1 @@
-"""The true machines, one or two files each: the machine, and its tests with what can go wrong on it."""
+"""The true machines, a file each: the machine, its tests, and what can go wrong on it."""

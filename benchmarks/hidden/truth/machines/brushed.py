@@ -2,42 +2,27 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
 from numpy.typing import NDArray
 
-from hidden.truth.body import Body, Joint, Skeleton, skeleton
+from hidden.truth import faults, foreign
+from hidden.truth.archetype import Archetype, Hidden, Plan, Spot
+from hidden.truth.body import Body, Joint, Skeleton
 from hidden.truth.change import Change
 from hidden.truth.draw import Draw
-from hidden.truth.films import cylinder_still, gap, plate_still, radiation
-from hidden.truth.losses import ALPHA, bertotti, friction
-from hidden.truth.machine import Film, Inputs, Loss, Machine
+from hidden.truth.effects import METER, airflow, bridge, covered, draught, fading, heating, less, stirred_gap
+from hidden.truth.films import across_gap, cylinder_still, plate_still, radiation
+from hidden.truth.losses import ALPHA, bearing, bertotti
+from hidden.truth.machine import Array, Film, Inputs, Loss, Stream
+from hidden.truth.profile import Rng, levels, steady, until
 
-Array = NDArray[np.float64]
 RATED, BLOWN = 1000.0, 400.0
 COPPER, STEEL, IRON = -2e-4, -8e-4, -9e-4
 ENDS = (("de", 0.0), ("nde", 1.0))
 
 
-@dataclass(frozen=True)
-class Draught:
-    """Air through cells one after the other, `share` of the recorded m3/h, as dense as at the inlet."""
-
-    name: str
-    cells: NDArray[np.int64]
-    share: float
-
-    def into(self, q: Array, T: Array, u: Inputs) -> None:
-        mcp = self.share * u["fan_flow_m3h"] / 3600.0 * 352.98 / (u["T_ambient"] + 273.15) * 1006.0
-        before = np.concatenate([[u["T_ambient"]], T[self.cells[:-1]]])
-        q[self.cells] += mcp * (before - T[self.cells])
-
-
 def bodies(d: Draw) -> list[Body]:
-    def C(key: str, value: float) -> float:
-        return value * d.factor(f"capacity.{key}", 0.05)
-
+    C = d.capacity
     side = [
         b
         for end, _ in ENDS
@@ -62,9 +47,7 @@ def bodies(d: Draw) -> list[Body]:
 
 
 def joints(d: Draw) -> list[Joint]:
-    def G(key: str, value: float, sd: float) -> float:
-        return value * d.factor(key, sd)
-
+    G = d.conductance
     side = [
         j
         for end, x in ENDS
@@ -107,10 +90,7 @@ def films(s: Skeleton, d: Draw) -> list[Film]:
         out.append(Film(f"inner.{end}", inner, air[[cell]], np.full(inner.size, 0.07 / inner.size), blown(40.0)))
     g = 2e-3 / d.factor("gap", 0.15)
 
-    def film(T: Array, Ta: Array, u: Inputs) -> Array:
-        return gap(0.5 * (T + Ta), u["speed_rpm"], 0.1, g)
-
-    return [*out, *outside(s, d), Film("gap", s.cells("core"), s.cells("poles"), np.full(11, 0.1 / 11), film)]
+    return [*out, *outside(s, d), across_gap(s, "core", "poles", 0.1, 0.1, g)]
 
 
 def _along(s: Skeleton, body: str, air: NDArray[np.int64], area: float, h) -> Film:
@@ -160,15 +140,126 @@ def losses(s: Skeleton, d: Draw) -> list[Loss]:
     for end, _ in ENDS:
         P = 15.0 * d.factor(f"bearing.{end}", 0.25)
 
-        def grease(T: Array, u: Inputs, P: float = P) -> Array:
-            return friction(T, u["speed_rpm"] / RATED, P)
-
-        out.append(Loss(f"grease.{end}", s.cells(f"bearing.{end}"), np.full(2, 0.5), grease))
+        out.append(Loss(f"grease.{end}", s.cells(f"bearing.{end}"), np.full(2, 0.5), bearing(P, RATED)))
     return out
 
 
-def machine(d: Draw, change: Change) -> Machine:
-    """The machine of one draw with what is hidden in it."""
-    s = skeleton([*bodies(d), *change.bodies], [*joints(d), *change.joints])
-    draught = Draught("air", s.cells("air"), d.factor("flow", 0.03))
-    return Machine(s, (*films(s, d), draught, *losses(s, d), *change.terms(s)))
+def streams(s: Skeleton, d: Draw) -> list[Stream]:
+    share = d.factor("flow", 0.03)  # of the recorded m3/h
+
+    def mcp(T: Array, u: Inputs) -> float:
+        return share * u["fan_flow_m3h"] / 3600.0 * 352.98 / (u["T_ambient"] + 273.15) * 1006.0
+
+    return [Stream(s.cells("air"), "T_ambient", mcp)]
+
+
+def drive(current: Array, speed: Array, wind: Array, flow: Array) -> dict[str, Array]:
+    return {"current_A": current, "speed_rpm": speed, "vehicle_speed_mps": wind, "fan_flow_m3h": flow}
+
+
+def direct(rng: Rng, at: Array) -> dict[str, Array]:
+    """Current at a locked rotor, then cooling down; less air from half time on."""
+    current = levels(at, rng, 60.0, 130.0, 25.0) * until(at, 55.0, 1.0)
+    return drive(current, steady(at, 0.0), steady(at, 0.0), np.where(at > 2100.0, 250.0, 400.0))
+
+
+def load(rng: Rng, at: Array) -> dict[str, Array]:
+    return drive(levels(at, rng, 50.0, 190.0, 11.0), steady(at, 900.0), steady(at, 0.0), steady(at, 400.0))
+
+
+def speeds(rng: Rng, at: Array) -> dict[str, Array]:
+    flow = np.where(at > 2700.0, 300.0, 420.0)
+    return drive(levels(at, rng, 50.0, 140.0, 15.0), levels(at, rng, 250.0, 2000.0, 9.0), steady(at, 0.0), flow)
+
+
+def road(rng: Rng, at: Array) -> dict[str, Array]:
+    wind = levels(at, rng, 0.0, 18.0, 5.0)
+    return drive(levels(at, rng, 40.0, 200.0, 4.0), levels(at, rng, 300.0, 1900.0, 6.0), wind, steady(at, 380.0))
+
+
+NODES = ("winding.armature", "rotor", "commutator", "poles", "winding.field", "yoke", "flange.de", "flange.nde")
+PARTS = {n: {"winding.armature": "armature", "rotor": "core", "winding.field": "field"}.get(n, n) for n in NODES}
+
+BRUSHED = Archetype(
+    name="brushed",
+    bodies=bodies,
+    joints=joints,
+    terms=(films, streams, losses),
+    plans=(
+        Plan("locked", "calibrate", 75.0, direct),
+        Plan("load", "calibrate", 75.0, load),
+        Plan("speeds", "calibrate", 75.0, speeds),
+        Plan("road", "validate", 75.0, road),
+        Plan("road-2", "hold-out", 75.0, road),
+    ),
+    thermometers={
+        **{n: Spot(PARTS[n], 0.5) for n in NODES if n not in ("winding.armature", "rotor")},
+        "air.de": Spot("air", 0.8),
+    },
+    baths={"bench": Spot("bench", 0.1)},
+    missing=(
+        Hidden("convection@flange.de", lambda a: airflow("flange.de", a), 20.0),
+        Hidden("convection@yoke", lambda a: airflow("yoke", a), 60.0),
+        Hidden("conduction.bench@flange.de", lambda a: bridge("foot", a, "flange.de", "bench", (0.5, 0.1)), 15.0),
+        Hidden("convection.constant@flange.nde", lambda a: draught("flange.nde", a), 15.0),
+        Hidden("brush.drop@commutator", lambda a: heating("commutator", a, (0, 0), (1.0, 0.9), fade=0.001), 400.0),
+        Hidden("brush.friction@commutator", lambda a: heating("commutator", a, (1.0, 0.9), fade=0.001), 300.0),
+        Hidden("windage@rotor", lambda a: heating("core", a, (3.0, 2.8)), 200.0),
+        Hidden(
+            "copper.ac@winding.armature", lambda a: heating("armature", a, (2.0, 1.8), (2.0, 2.0), fade=0.002), 600.0
+        ),
+        Hidden("gap.convection@poles|rotor", lambda a: stirred_gap(a, "core", "poles"), 40.0),
+        Hidden("loss.constant@flange.de", lambda a: heating("flange.de", a), 200.0),
+        Hidden("fouling@yoke", lambda a: fading("yoke", a), 0.8),
+    ),
+    faults={
+        "sensor.bias@yoke": lambda seed: faults.bias("yoke", 4.0),
+        "sensor.lag@winding.field": lambda seed: faults.slow("winding.field", 150.0),
+        "sensor.gain@poles": lambda seed: faults.gain("poles", -0.12),
+        "sensor.stem@commutator": lambda seed: faults.stem("commutator", 0.2),
+        "sensor.delay@commutator": lambda seed: faults.late("commutator", 90.0),
+        "sensor.drift@poles": lambda seed: faults.drift("poles", 4.0),
+        "sensor.swap@flange.de|flange.nde": lambda seed: faults.swapped("flange.de", "flange.nde"),
+        "ambient.offset@ambient": lambda seed: faults.offset("T_ambient", 5.0),
+        "frozen@flange.de": lambda seed: faults.frozen("flange.de", 0.5),
+        "clipped@winding.field": lambda seed: faults.clipped("winding.field", 0.6),
+    },
+    foreign={
+        "cable at winding.field": lambda seed: foreign.cable("field", 10.0, 6000.0),
+        "splash at yoke": lambda seed: foreign.gusts("yoke", 500.0, seed),
+        "rub at flange.de": lambda seed: foreign.rub("bearing.de", "core", "yoke", 60.0),
+        "heater at flange.nde": lambda seed: foreign.hot_spell("flange.nde", 120.0),
+    },
+    absorbed={
+        "link.bolts": lambda seed: Change({"bolts": 0.2}),
+        "link.coil": lambda seed: Change({"coil": 0.3}),
+        "fan.flow": lambda seed: Change({"fan": 0.5}),
+        "loss.brushes": lambda seed: Change({"drop": 2.0, "rub": 2.0}),
+    },
+    tense={
+        "bolts": 0.25,
+        "coil": 0.25,
+        "fan": 0.12,
+        "iron": 0.15,
+        "hub": 0.25,
+        "feet": 0.25,
+        "spigot-de": 0.25,
+        "rub": 0.2,
+        "still": 0.15,
+        "capacity.yoke": 0.08,
+    },
+    parts=PARTS,
+    passing=(
+        Hidden("convection.constant@yoke", lambda a: draught("yoke", a), 60.0),
+        Hidden("convection.constant@flange.nde", lambda a: draught("flange.nde", a), 15.0),
+        Hidden("loss.constant@flange.de", lambda a: heating("flange.de", a), 200.0),
+        Hidden("fan slower@air", lambda a: less("fan_flow_m3h", a), 1.5),
+        Hidden("cover@yoke", lambda a: covered(("frame",), a), 0.9),
+        Hidden("meter@current_A", lambda a: less("current_A", a), 0.5, least=METER),
+    ),
+    words={
+        "fan slower@air": ("flow@stream.fan", "flow@fan.flow", "input.factor@fan_flow_m3h"),
+        "cover@yoke": ("blockage@yoke",),
+        "meter@current_A": ("input.factor@current_A",),
+    },
+)

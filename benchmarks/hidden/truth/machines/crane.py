@@ -7,31 +7,26 @@ iron while it switches, at standstill as well.
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
 from hidden.truth import faults, foreign
-from hidden.truth.archetype import Archetype, Hidden, Plan, Spot
-from hidden.truth.body import Body, Joint, Skeleton, skeleton
+from hidden.truth.archetype import Archetype, Hidden, Plan, Spot, no_tempco
+from hidden.truth.body import Body, Joint, Skeleton
 from hidden.truth.change import Change
 from hidden.truth.draw import Draw
 from hidden.truth.effects import METER, covered, draught, heating, joined, less, spinning, switched, warming
-from hidden.truth.films import gap, plate_still, radiation
-from hidden.truth.losses import ALPHA, bertotti, copper, friction
-from hidden.truth.machine import Film, Inputs, Loss, Machine
-from hidden.truth.profile import levels, steady, until
+from hidden.truth.films import across_gap, plate_still, radiation
+from hidden.truth.losses import ALPHA, bearing, bertotti, joule
+from hidden.truth.machine import Array, Film, Inputs, Loss
+from hidden.truth.profile import Rng, levels, steady, until
 from hidden.truth.readings import Logger
 
-Array = NDArray[np.float64]
-Rng = np.random.Generator
 RATED, R1, R2, PULSES = 1500.0, 0.17, 0.11, 4000.0
 COPPER, STEEL, CAST = -2e-4, -8e-4, -5e-4
 ENDS = (("de", 0.0), ("fan", 0.999))
 
 
 def bodies(d: Draw) -> list[Body]:
-    def C(key: str, value: float) -> float:
-        return value * d.factor(f"capacity.{key}", 0.05)
-
+    C = d.capacity
     side = [
         b
         for end, _ in ENDS
@@ -55,9 +50,7 @@ def bodies(d: Draw) -> list[Body]:
 
 
 def joints(d: Draw) -> list[Joint]:
-    def G(key: str, value: float, sd: float = 0.25) -> float:
-        return value * d.factor(key, sd)
-
+    G = d.conductance
     side = [
         j
         for end, x in ENDS
@@ -115,8 +108,7 @@ def films(s: Skeleton, d: Draw) -> list[Film]:
     holes = Film(
         "holes", s.cells("air.de"), s.cells("air.fan"), np.ones(1), lambda T, Ta, u: 3.0 + 0.02 * u["speed_rpm"]
     )
-    across = lambda T, Ta, u: gap(0.5 * (T + Ta), u["speed_rpm"], 0.085, g)  # noqa: E731
-    return [*out, holes, Film("gap", s.cells("cage")[:6], s.cells("teeth"), np.full(6, 0.11 / 6), across)]
+    return [*out, holes, across_gap(s, "cage", "teeth", 0.11, 0.085, g)]
 
 
 def losses(s: Skeleton, d: Draw) -> list[Loss]:
@@ -124,9 +116,6 @@ def losses(s: Skeleton, d: Draw) -> list[Loss]:
     R, bars = R1 * d.factor("copper", 0.04), R2 * d.factor("cage", 0.12)
     kh, ke, kx = 150.0 * d.factor("iron", 0.15), 120.0 * d.factor("eddy", 0.2), 40.0 * d.factor("excess", 0.3)
     pulses, stray = 45.0 * d.factor("pulses", 0.25), 60.0 * d.factor("stray", 0.25)
-
-    def winding(T: Array, u: Inputs) -> Array:
-        return copper(R, u["current_A"], T)
 
     def iron(T: Array, u: Inputs) -> Array:
         f, B = abs(u["speed_rpm"]) / RATED, u["flux_percent"] / 100.0
@@ -141,10 +130,10 @@ def losses(s: Skeleton, d: Draw) -> list[Loss]:
 
     rings = np.array([1.6, 1.0, 1.0, 1.0, 1.0, 1.0, 1.6])
     out = [
-        Loss("slot", s.cells("slot"), np.full(6, 0.5 / 6), winding),
+        Loss("slot", s.cells("slot"), np.full(6, 0.5 / 6), joule(R)),
         Loss("teeth", s.cells("teeth"), np.full(6, 0.5 / 6), iron),
         Loss("yoke", s.cells("yoke"), np.full(6, 0.5 / 6), iron),
-        Loss("bars", s.cells("cage"), rings / rings.sum(), lambda T, u: copper(bars, u["rotor_A"], T)),
+        Loss("bars", s.cells("cage"), rings / rings.sum(), joule(bars, "rotor_A")),
         Loss("stray", s.cells("cage"), np.full(7, 0.6 / 7), load),
         Loss("stray teeth", s.cells("teeth"), np.full(6, 0.4 / 6), load),
         Loss("pulses", s.cells("teeth"), np.full(6, 0.65 / 6), ripple),
@@ -152,15 +141,9 @@ def losses(s: Skeleton, d: Draw) -> list[Loss]:
     ]
     for end, _ in ENDS:
         P = 24.0 * d.factor(f"grease-{end}", 0.25)
-        grease = lambda T, u, P=P: friction(T, abs(u["speed_rpm"]) / RATED, P)  # noqa: E731
-        out.append(Loss(f"head.{end}", s.cells(f"head.{end}"), np.full(4, 0.25 / 4), winding))
-        out.append(Loss(f"grease.{end}", s.cells(f"bearing.{end}"), np.full(2, 0.5), grease))
+        out.append(Loss(f"head.{end}", s.cells(f"head.{end}"), np.full(4, 0.25 / 4), joule(R)))
+        out.append(Loss(f"grease.{end}", s.cells(f"bearing.{end}"), np.full(2, 0.5), bearing(P, RATED)))
     return out
-
-
-def machine(d: Draw, change: Change) -> Machine:
-    s = skeleton([*bodies(d), *change.bodies], [*joints(d), *change.joints])
-    return Machine(s, (*films(s, d), *losses(s, d), *change.terms(s)))
 
 
 def drive(current: Array, speed: Array, blower: Array) -> dict[str, Array]:
@@ -193,100 +176,93 @@ def ships(rng: Rng, at: Array) -> dict[str, Array]:
     return drive(levels(at, rng, 16.0, 58.0, 3.0), levels(at, rng, 200.0, 2600.0, 4.0), turns(at, rng, 10.0))
 
 
-PLANS = (
-    Plan("direct current", "calibrate", 100.0, direct),
-    Plan("stand", "calibrate", 100.0, stand),
-    Plan("empty hook", "calibrate", 90.0, empty),
-    Plan("first ship", "validate", 100.0, ships),
-    Plan("second ship", "hold-out", 100.0, ships),
-)
-MISSING = (
-    Hidden("draught@frame", lambda a: draught("frame", a), 30.0),
-    Hidden("shaft fan@shield.de", lambda a: spinning("shield.de", a), 20.0),
-    Hidden("coupling heat@bearing.de", lambda a: joined("bearing.de", a), 8.0),
-    Hidden("windage@cage", lambda a: heating("cage", a, (3.0, 2.75)), 100.0),
-    Hidden("friction@bearing.fan", lambda a: heating("bearing.fan", a, (5 / 3, 1.3), fade=0.004), 150.0),
-    Hidden("ac copper@slot", lambda a: heating("slot", a, (2.0, 1.85), (2.0, 2.0), fade=0.002), 900.0),
-    Hidden("load loss@cage", lambda a: heating("cage", a, (2.0, 1.8), (2.0, 2.0)), 900.0),
-    Hidden("pulses@cage", lambda a: switched("cage", a / PULSES, "switching_Hz"), 300.0),
-    Hidden(
-        "no tempco@slot", lambda a: warming("slot", 3.0 * R1, a), ALPHA, ((("losses", "copper", "alpha_1_K"), 0.0),)
-    ),
-)
-PASSING = (
-    Hidden("draught@frame", lambda a: draught("frame", a), 60.0),
-    Hidden("heat@shield.de", lambda a: heating("shield.de", a), 300.0),
-    Hidden("cover@frame", lambda a: covered(("ribs",), a), 0.9),
-    Hidden("blower slower@frame", lambda a: less("blower_on", a), 1.5),
-    Hidden("meter@current_A", lambda a: less("current_A", -a), 0.25, least=METER),
-)
-WORDS = {
-    "draught@frame": ("convection.constant@frame",),
-    "shaft fan@shield.de": ("convection.fan@front", "convection.rotation@front"),
-    "coupling heat@bearing.de": ("conduction.shaft@front bearing", "conduction.shaft@rotor"),
-    "windage@cage": ("windage@cage", "windage@rotor"),
-    "friction@bearing.fan": ("bearing.friction@rear bearing", "loss.factor@rear grease"),
-    "ac copper@slot": ("copper.ac@winding",),
-    "load loss@cage": ("loss.rotor.load@cage",),
-    "pulses@cage": ("iron.pwm@cage", "iron.pwm@rotor"),
-    "no tempco@slot": ("copper.feedback@copper",),
-    "heat@shield.de": ("loss.constant@front",),
-    "cover@frame": ("blockage@frame",),
-    "blower slower@frame": ("input.factor@blower_on",),
-    "meter@current_A": ("input.factor@current_A",),
-}
 CALLED = {"slot": "winding", "head.de": "heads", "yoke": "core", "shield.de": "front", "shield.fan": "rear"}
 CALLED["bearing.de"] = "front bearing"
 READ = {"slot": 0.5, "head.de": 0.5, "yoke": 0.6, "frame": 0.5, "shield.de": 0.4, "shield.fan": 0.4, "bearing.de": 0.7}
-FAULTS = {
-    "sensor.gain@core": lambda seed: faults.gain("yoke", -0.1),
-    "sensor.lag@heads": lambda seed: faults.slow("head.de", 200.0),
-    "sensor.stem@front bearing": lambda seed: faults.stem("bearing.de", 0.25),
-    "sensor.swap@front|rear": lambda seed: faults.swapped("shield.de", "shield.fan"),
-    "sensor.bias@frame": lambda seed: faults.bias("frame", 4.0),
-    "time.offset@stand": lambda seed: Change(in_test={"stand": faults.clock(READ, 240.0)}),
-    "input.factor@current_A": lambda seed: Change(in_test={"stand": faults.factor("current_A", 1.15)}),
-    "ambient.offset@ambient": lambda seed: faults.offset("T_ambient", 5.0),
-    "frozen@rear": lambda seed: faults.frozen("shield.fan", 0.4),
-}
-FOREIGN = {
-    "cable at heads": lambda seed: foreign.cable("head.de", 7.0, 5000.0),
-    "splash at frame": lambda seed: foreign.gusts("frame", 700.0, seed),
-    "rub at rear bearing": lambda seed: foreign.rub("bearing.fan", "rotor", "frame", 60.0),
-    "heater at front": lambda seed: foreign.hot_spell("shield.de", 200.0),
-}
-ABSORBED = {
-    "frame joint": lambda seed: Change({"press": 0.25}),
-    "slot wall": lambda seed: Change({"wall": 0.35}),
-    "blower": lambda seed: Change({"blower": 0.5}),
-    "loss.iron": lambda seed: Change({"iron": 2.2, "eddy": 2.2}),
-}
-TENSE = {
-    "press": 0.25,
-    "wall": 0.2,
-    "blower": 0.12,
-    "iron": 0.15,
-    "cage": 0.12,
-    "bars": 0.25,
-    "still": 0.15,
-    "stray": 0.25,
-}
 PARTS = {**{node: body for body, node in CALLED.items()}, "cage": "cage", "rotor": "rotor", "frame": "frame"}
 PARTS["rear bearing"] = "bearing.fan"
+
+
 CRANE = Archetype(
-    "crane",
-    machine,
-    PLANS,
-    {body: Spot(body, x) for body, x in READ.items()},
-    {},
-    MISSING,
-    FAULTS,
-    FOREIGN,
-    ABSORBED,
-    TENSE,
-    PARTS,
-    PASSING,
-    Logger(30.0, 5.0, 0.1, (10.0, 30.0), 0.1),
-    CALLED,
-    WORDS,
+    name="crane",
+    bodies=bodies,
+    joints=joints,
+    terms=(films, losses),
+    plans=(
+        Plan("direct current", "calibrate", 100.0, direct),
+        Plan("stand", "calibrate", 100.0, stand),
+        Plan("empty hook", "calibrate", 90.0, empty),
+        Plan("first ship", "validate", 100.0, ships),
+        Plan("second ship", "hold-out", 100.0, ships),
+    ),
+    thermometers={body: Spot(body, x) for body, x in READ.items()},
+    missing=(
+        Hidden("draught@frame", lambda a: draught("frame", a), 30.0),
+        Hidden("shaft fan@shield.de", lambda a: spinning("shield.de", a), 20.0),
+        Hidden("coupling heat@bearing.de", lambda a: joined("bearing.de", a), 8.0),
+        Hidden("windage@cage", lambda a: heating("cage", a, (3.0, 2.75)), 100.0),
+        Hidden("friction@bearing.fan", lambda a: heating("bearing.fan", a, (5 / 3, 1.3), fade=0.004), 150.0),
+        Hidden("ac copper@slot", lambda a: heating("slot", a, (2.0, 1.85), (2.0, 2.0), fade=0.002), 900.0),
+        Hidden("load loss@cage", lambda a: heating("cage", a, (2.0, 1.8), (2.0, 2.0)), 900.0),
+        Hidden("pulses@cage", lambda a: switched("cage", a / PULSES, "switching_Hz"), 300.0),
+        Hidden("no tempco@slot", lambda a: warming("slot", 3.0 * R1, a), ALPHA, no_tempco("copper")),
+    ),
+    faults={
+        "sensor.gain@core": lambda seed: faults.gain("yoke", -0.1),
+        "sensor.lag@heads": lambda seed: faults.slow("head.de", 200.0),
+        "sensor.stem@front bearing": lambda seed: faults.stem("bearing.de", 0.25),
+        "sensor.swap@front|rear": lambda seed: faults.swapped("shield.de", "shield.fan"),
+        "sensor.bias@frame": lambda seed: faults.bias("frame", 4.0),
+        "time.offset@stand": lambda seed: Change(in_test={"stand": faults.clock(READ, 240.0)}),
+        "input.factor@current_A": lambda seed: Change(in_test={"stand": faults.factor("current_A", 1.15)}),
+        "ambient.offset@ambient": lambda seed: faults.offset("T_ambient", 5.0),
+        "frozen@rear": lambda seed: faults.frozen("shield.fan", 0.4),
+    },
+    foreign={
+        "cable at heads": lambda seed: foreign.cable("head.de", 7.0, 5000.0),
+        "splash at frame": lambda seed: foreign.gusts("frame", 700.0, seed),
+        "rub at rear bearing": lambda seed: foreign.rub("bearing.fan", "rotor", "frame", 60.0),
+        "heater at front": lambda seed: foreign.hot_spell("shield.de", 200.0),
+    },
+    absorbed={
+        "frame joint": lambda seed: Change({"press": 0.25}),
+        "slot wall": lambda seed: Change({"wall": 0.35}),
+        "blower": lambda seed: Change({"blower": 0.5}),
+        "loss.iron": lambda seed: Change({"iron": 2.2, "eddy": 2.2}),
+    },
+    tense={
+        "press": 0.25,
+        "wall": 0.2,
+        "blower": 0.12,
+        "iron": 0.15,
+        "cage": 0.12,
+        "bars": 0.25,
+        "still": 0.15,
+        "stray": 0.25,
+    },
+    parts=PARTS,
+    passing=(
+        Hidden("draught@frame", lambda a: draught("frame", a), 60.0),
+        Hidden("heat@shield.de", lambda a: heating("shield.de", a), 300.0),
+        Hidden("cover@frame", lambda a: covered(("ribs",), a), 0.9),
+        Hidden("blower slower@frame", lambda a: less("blower_on", a), 1.5),
+        Hidden("meter@current_A", lambda a: less("current_A", -a), 0.25, least=METER),
+    ),
+    logger=Logger(30.0, 5.0, 0.1, (10.0, 30.0), 0.1),
+    called=CALLED,
+    words={
+        "draught@frame": ("convection.constant@frame",),
+        "shaft fan@shield.de": ("convection.fan@front", "convection.rotation@front"),
+        "coupling heat@bearing.de": ("conduction.shaft@front bearing", "conduction.shaft@rotor"),
+        "windage@cage": ("windage@cage", "windage@rotor"),
+        "friction@bearing.fan": ("bearing.friction@rear bearing", "loss.factor@rear grease"),
+        "ac copper@slot": ("copper.ac@winding",),
+        "load loss@cage": ("loss.rotor.load@cage",),
+        "pulses@cage": ("iron.pwm@cage", "iron.pwm@rotor"),
+        "no tempco@slot": ("copper.feedback@copper",),
+        "heat@shield.de": ("loss.constant@front",),
+        "cover@frame": ("blockage@frame",),
+        "blower slower@frame": ("input.factor@blower_on",),
+        "meter@current_A": ("input.factor@current_A",),
+    },
 )

@@ -5,47 +5,26 @@ Bodies run from the hub (0) to the rim (1). Air enters at the hub and is thrown 
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
-from numpy.typing import NDArray
 
 from hidden.truth import faults, foreign
-from hidden.truth.archetype import Archetype, Hidden, Plan, Spot
-from hidden.truth.body import Body, Joint, Skeleton, skeleton
+from hidden.truth.archetype import Archetype, Hidden, Plan, Spot, no_tempco
+from hidden.truth.body import Body, Joint, Skeleton
 from hidden.truth.change import Change
 from hidden.truth.draw import Draw
 from hidden.truth.effects import METER, airflow, blown, bridge, covered, draught, heating, less, spinning, warming
 from hidden.truth.films import air, plate_still, radiation
-from hidden.truth.losses import ALPHA
-from hidden.truth.machine import Film, Inputs, Loss, Machine
-from hidden.truth.profile import levels, steady, until
+from hidden.truth.losses import ALPHA, joule
+from hidden.truth.machine import Array, Film, Inputs, Loss, Stream
+from hidden.truth.profile import Rng, levels, steady, until
 from hidden.truth.readings import Logger
 
-Array = NDArray[np.float64]
-Rng = np.random.Generator
 R20, RIM, SIDES = 0.028, 0.14, ("left", "right")
-
-
-@dataclass(frozen=True)
-class Throughflow:
-    """Air through cells one after the other, what the blower and the discs' own pumping move (m3/s)."""
-
-    name: str
-    cells: NDArray[np.int64]
-    blower: float
-    pumping: float
-
-    def into(self, q: Array, T: Array, u: Inputs) -> None:
-        flow = 2e-3 + self.blower * u["blower_on"] + self.pumping * abs(u["speed_rpm"]) / 3000.0
-        mcp = flow * 352.98 / (u["T_ambient"] + 273.15) * 1006.0
-        before = np.concatenate([[u["T_ambient"]], T[self.cells[:-1]]])
-        q[self.cells] += mcp * (before - T[self.cells])
 
 
 def bodies(d: Draw) -> list[Body]:
     def C(key: str, value: float) -> float:
-        return value * d.factor(f"capacity.{key}", 0.06)
+        return d.capacity(key, value, 0.06)
 
     side = [
         b
@@ -67,9 +46,7 @@ def bodies(d: Draw) -> list[Body]:
 
 
 def joints(d: Draw) -> list[Joint]:
-    def G(key: str, value: float, sd: float = 0.25) -> float:
-        return value * d.factor(key, sd)
-
+    G = d.conductance
     side = [
         j
         for k, s in enumerate(SIDES)
@@ -122,15 +99,12 @@ def films(s: Skeleton, d: Draw) -> list[Film]:
 def losses(s: Skeleton, d: Draw) -> list[Loss]:
     R, iron, eddy = R20 * d.factor("copper", 0.04), 130.0 * d.factor("iron", 0.15), 28.0 * d.factor("eddy", 0.2)
 
-    def winding(T: Array, u: Inputs) -> Array:
-        return 3.0 * R * u["current_A"] ** 2 * (1.0 + ALPHA * (T - 20.0))
-
     def core(T: Array, u: Inputs) -> float:
         f = abs(u["speed_rpm"]) / 3000.0
         return iron * (0.4 * f**1.05 + 0.6 * f**1.8)
 
     out = [
-        Loss("coils", s.cells("coils"), np.full(6, 1 / 6), winding),
+        Loss("coils", s.cells("coils"), np.full(6, 1 / 6), joule(R)),
         Loss("core", s.cells("teeth"), np.full(6, 1 / 6), core),
     ]
     for side in SIDES:
@@ -152,11 +126,15 @@ def losses(s: Skeleton, d: Draw) -> list[Loss]:
     return out
 
 
-def machine(d: Draw, change: Change) -> Machine:
-    s = skeleton([*bodies(d), *change.bodies], [*joints(d), *change.joints])
+def streams(s: Skeleton, d: Draw) -> list[Stream]:
     blower, pumping = 0.016 * d.factor("blower", 0.1), 0.006 * d.factor("pumping", 0.2)
-    streams = tuple(Throughflow(f"air {side}", s.cells(f"air.{side}"), blower, pumping) for side in SIDES)
-    return Machine(s, (*films(s, d), *streams, *losses(s, d), *change.terms(s)))
+
+    def mcp(T: Array, u: Inputs) -> float:
+        """Of what the blower and the discs' own pumping move."""
+        flow = 2e-3 + blower * u["blower_on"] + pumping * abs(u["speed_rpm"]) / 3000.0
+        return flow * 352.98 / (u["T_ambient"] + 273.15) * 1006.0
+
+    return [Stream(s.cells(f"air.{side}"), "T_ambient", mcp) for side in SIDES]
 
 
 def drive(current: Array, speed: Array, blower: Array, wind: Array) -> dict[str, Array]:
@@ -188,89 +166,53 @@ def road(rng: Rng, at: Array) -> dict[str, Array]:
     return drive(levels(at, rng, 10.0, 95.0, 3.0), levels(at, rng, 300.0, 4000.0, 5.0), turns(at, rng, 10.0), wind)
 
 
-PLANS = (
-    Plan("locked rotor", "calibrate", 80.0, locked),
-    Plan("bench", "calibrate", 80.0, bench),
-    Plan("coast", "calibrate", 60.0, coast),
-    Plan("road", "validate", 80.0, road),
-    Plan("road back", "hold-out", 80.0, road),
-)
-MISSING = (
-    Hidden("road wind@ring", lambda a: airflow("ring", a), 20.0),
-    Hidden("shaft fan@cover.right", lambda a: spinning("cover.right", a), 10.0),
-    Hidden("draught@cover.left", lambda a: draught("cover.left", a), 10.0),
-    Hidden("windage@rotor.left", lambda a: heating("rotor.left", a, (3.0, 2.8)), 30.0),
-    Hidden("ac copper@coils", lambda a: heating("coils", a, (2.0, 1.85), (2.0, 2.0), fade=0.002), 300.0),
-    Hidden("load loss@magnets.left", lambda a: heating("magnets.left", a, (2.0, 1.8), (2.0, 2.0)), 60.0),
-    Hidden("bridge@coils-ring", lambda a: bridge("leads", a, "coils", "ring", (0.9, 0.5)), 12.0),
-    Hidden(
-        "no tempco@coils", lambda a: warming("coils", 3.0 * R20, a), ALPHA, ((("losses", "joule", "alpha_1_K"), 0.0),)
-    ),
-)
-WORDS = {
-    "road wind@ring": ("convection@stator_ring",),
-    "shaft fan@cover.right": ("convection.fan@cover_R", "convection.rotation@cover_R"),
-    "draught@cover.left": ("convection.constant@cover_L",),
-    "windage@rotor.left": ("windage@disc_L", "windage@pm_L"),
-    "ac copper@coils": ("copper.ac@coils",),
-    "load loss@magnets.left": ("loss.rotor.load@pm_L",),
-    "bridge@coils-ring": ("coupling@coils|stator_ring",),
-    "no tempco@coils": ("copper.feedback@joule",),
-    "draught@ring": ("convection.constant@stator_ring",),
-    "side blower@cover.right": ("convection.constant@cover_R",),
-    "heat@cover.left": ("loss.constant@cover_L",),
-    "blower slower@air": ("input.factor@blower_on",),
-    "cover@ring": ("blockage@stator_ring",),
-    "meter@current_A": ("input.factor@current_A",),
-}
-FAULTS = {
-    "sensor.gain@coils": lambda seed: faults.gain("coils", -0.08),
-    "sensor.lag@coils": lambda seed: faults.slow("coils", 100.0),
-    "sensor.swap@cover_L|cover_R": lambda seed: faults.swapped("cover.left", "cover.right"),
-    "sensor.drift@stator_ring": lambda seed: faults.drift("ring", 5.0),
-    "sensor.stem@teeth": lambda seed: faults.stem("teeth", 0.2),
-    "time.offset@bench": lambda seed: Change(
-        in_test={"bench": faults.clock(("coils", "teeth", "ring", "cover.left", "cover.right"), -180.0)}
-    ),
-    "input.factor@current_A": lambda seed: faults.factor("current_A", 0.88),
-    "ambient.offset@ambient": lambda seed: faults.offset("T_ambient", -4.0),
-    "clipped@coils": lambda seed: faults.clipped("coils", 0.6),
-}
-FOREIGN = {
-    "cable at coils": lambda seed: foreign.cable("coils", 3.0, 1500.0),
-    "splash at stator_ring": lambda seed: foreign.gusts("ring", 150.0, seed),
-    "demagnetisation at pm_R": lambda seed: foreign.runaway("magnets.right", 60.0, 45.0),
-}
-ABSORBED = {
-    "coil joint": lambda seed: Change({"resin": 0.3}),
-    "loss.iron": lambda seed: Change({"iron": 2.2}),
-    "discs": lambda seed: Change({"discs": 0.45}),
-}
-PASSING = (
-    Hidden("draught@ring", lambda a: draught("ring", a), 30.0),
-    Hidden("side blower@cover.right", lambda a: blown("cover.right", a, "blower_on"), 20.0),
-    Hidden("heat@cover.left", lambda a: heating("cover.left", a), 150.0),
-    Hidden("blower slower@air", lambda a: less("blower_on", a), 1.5),
-    Hidden("cover@ring", lambda a: covered(("rim",), a), 0.9),
-    Hidden("meter@current_A", lambda a: less("current_A", a), 0.5, least=METER),
-)
 DISC = Archetype(
-    "disc",
-    machine,
-    PLANS,
-    {
-        "coils": Spot("coils", 0.5),
-        "teeth": Spot("teeth", 0.5),
-        "ring": Spot("ring", 0.5),
-        "cover.left": Spot("cover.left", 0.5),
-        "cover.right": Spot("cover.right", 0.5),
+    name="disc",
+    bodies=bodies,
+    joints=joints,
+    terms=(films, streams, losses),
+    plans=(
+        Plan("locked rotor", "calibrate", 80.0, locked),
+        Plan("bench", "calibrate", 80.0, bench),
+        Plan("coast", "calibrate", 60.0, coast),
+        Plan("road", "validate", 80.0, road),
+        Plan("road back", "hold-out", 80.0, road),
+    ),
+    thermometers={n: Spot(n, 0.5) for n in ("coils", "teeth", "ring", "cover.left", "cover.right")},
+    missing=(
+        Hidden("road wind@ring", lambda a: airflow("ring", a), 20.0),
+        Hidden("shaft fan@cover.right", lambda a: spinning("cover.right", a), 10.0),
+        Hidden("draught@cover.left", lambda a: draught("cover.left", a), 10.0),
+        Hidden("windage@rotor.left", lambda a: heating("rotor.left", a, (3.0, 2.8)), 30.0),
+        Hidden("ac copper@coils", lambda a: heating("coils", a, (2.0, 1.85), (2.0, 2.0), fade=0.002), 300.0),
+        Hidden("load loss@magnets.left", lambda a: heating("magnets.left", a, (2.0, 1.8), (2.0, 2.0)), 60.0),
+        Hidden("bridge@coils-ring", lambda a: bridge("leads", a, "coils", "ring", (0.9, 0.5)), 12.0),
+        Hidden("no tempco@coils", lambda a: warming("coils", 3.0 * R20, a), ALPHA, no_tempco("joule")),
+    ),
+    faults={
+        "sensor.gain@coils": lambda seed: faults.gain("coils", -0.08),
+        "sensor.lag@coils": lambda seed: faults.slow("coils", 100.0),
+        "sensor.swap@cover_L|cover_R": lambda seed: faults.swapped("cover.left", "cover.right"),
+        "sensor.drift@stator_ring": lambda seed: faults.drift("ring", 5.0),
+        "sensor.stem@teeth": lambda seed: faults.stem("teeth", 0.2),
+        "time.offset@bench": lambda seed: Change(
+            in_test={"bench": faults.clock(("coils", "teeth", "ring", "cover.left", "cover.right"), -180.0)}
+        ),
+        "input.factor@current_A": lambda seed: faults.factor("current_A", 0.88),
+        "ambient.offset@ambient": lambda seed: faults.offset("T_ambient", -4.0),
+        "clipped@coils": lambda seed: faults.clipped("coils", 0.6),
     },
-    {},
-    MISSING,
-    FAULTS,
-    FOREIGN,
-    ABSORBED,
-    {
+    foreign={
+        "cable at coils": lambda seed: foreign.cable("coils", 3.0, 1500.0),
+        "splash at stator_ring": lambda seed: foreign.gusts("ring", 150.0, seed),
+        "demagnetisation at pm_R": lambda seed: foreign.runaway("magnets.right", 60.0, 45.0),
+    },
+    absorbed={
+        "coil joint": lambda seed: Change({"resin": 0.3}),
+        "loss.iron": lambda seed: Change({"iron": 2.2}),
+        "discs": lambda seed: Change({"discs": 0.45}),
+    },
+    tense={
         "resin": 0.2,
         "clamp": 0.25,
         "discs": 0.15,
@@ -280,7 +222,7 @@ DISC = Archetype(
         "rim-left": 0.25,
         "hub-right": 0.25,
     },
-    {
+    parts={
         "coils": "coils",
         "teeth": "teeth",
         "stator_ring": "ring",
@@ -292,8 +234,30 @@ DISC = Archetype(
         "cover_L": "cover.left",
         "cover_R": "cover.right",
     },
-    PASSING,
-    Logger(20.0, 5.0, 0.1, (3.0, 12.0), 0.08),
-    {"ring": "stator_ring", "cover.left": "cover_L", "cover.right": "cover_R"},
-    WORDS,
+    passing=(
+        Hidden("draught@ring", lambda a: draught("ring", a), 30.0),
+        Hidden("side blower@cover.right", lambda a: blown("cover.right", a, "blower_on"), 20.0),
+        Hidden("heat@cover.left", lambda a: heating("cover.left", a), 150.0),
+        Hidden("blower slower@air", lambda a: less("blower_on", a), 1.5),
+        Hidden("cover@ring", lambda a: covered(("rim",), a), 0.9),
+        Hidden("meter@current_A", lambda a: less("current_A", a), 0.5, least=METER),
+    ),
+    logger=Logger(20.0, 5.0, 0.1, (3.0, 12.0), 0.08),
+    called={"ring": "stator_ring", "cover.left": "cover_L", "cover.right": "cover_R"},
+    words={
+        "road wind@ring": ("convection@stator_ring",),
+        "shaft fan@cover.right": ("convection.fan@cover_R", "convection.rotation@cover_R"),
+        "draught@cover.left": ("convection.constant@cover_L",),
+        "windage@rotor.left": ("windage@disc_L", "windage@pm_L"),
+        "ac copper@coils": ("copper.ac@coils",),
+        "load loss@magnets.left": ("loss.rotor.load@pm_L",),
+        "bridge@coils-ring": ("coupling@coils|stator_ring",),
+        "no tempco@coils": ("copper.feedback@joule",),
+        "draught@ring": ("convection.constant@stator_ring",),
+        "side blower@cover.right": ("convection.constant@cover_R",),
+        "heat@cover.left": ("loss.constant@cover_L",),
+        "blower slower@air": ("input.factor@blower_on",),
+        "cover@ring": ("blockage@stator_ring",),
+        "meter@current_A": ("input.factor@current_A",),
+    },
 )

@@ -12,18 +12,16 @@ from numpy.typing import NDArray
 
 from hidden.truth import faults, foreign
 from hidden.truth.archetype import Archetype, Hidden, Plan, Spot
-from hidden.truth.body import Body, Joint, Skeleton, skeleton
+from hidden.truth.body import Body, Joint, Skeleton
 from hidden.truth.change import Change
 from hidden.truth.draw import Draw
 from hidden.truth.effects import METER, airflow, bridge, covered, draught, heating, less
-from hidden.truth.films import cylinder_still, gap, plate_still, radiation
-from hidden.truth.losses import bertotti, copper, friction
-from hidden.truth.machine import Film, Inputs, Loss, Machine
-from hidden.truth.profile import levels, steady, until
+from hidden.truth.films import across_gap, cylinder_still, plate_still, radiation
+from hidden.truth.losses import bearing, bertotti, copper, joule
+from hidden.truth.machine import Array, Film, Inputs, Loss
+from hidden.truth.profile import Rng, levels, steady, until
 from hidden.truth.readings import Logger
 
-Array = NDArray[np.float64]
-Rng = np.random.Generator
 RATED, R20, LAYERS = 5000.0, 9e-3, (1, 2, 3, 4)
 COPPER, STEEL, ALUMINIUM = -2e-4, -8e-4, -1e-4
 SIDES = (
@@ -60,9 +58,7 @@ class OilLoop:
 
 
 def bodies(d: Draw) -> list[Body]:
-    def C(key: str, value: float) -> float:
-        return value * d.factor(f"capacity.{key}", 0.05)
-
+    C = d.capacity
     side = [
         b
         for end, cover, *_ in SIDES
@@ -87,9 +83,7 @@ def bodies(d: Draw) -> list[Body]:
 
 
 def joints(d: Draw) -> list[Joint]:
-    def G(key: str, value: float, sd: float = 0.25) -> float:
-        return value * d.factor(key, sd)
-
+    G = d.conductance
     walls = [Joint(f"wall-{m}", f"layer.{m}", "teeth", G("wall", 26.0, 0.2), slope=4e-4) for m in LAYERS]
     side = [
         j
@@ -135,13 +129,7 @@ def films(s: Skeleton, d: Draw) -> list[Film]:
     out = [
         Film("drum", s.cells("housing"), "T_ambient", np.full(8, 0.35 / 8), drum),
         Film("tank wall", s.cells("housing")[2:6], s.cells("tank"), np.full(4, 0.05 / 4), lambda T, To, u: 90.0 * wet),
-        Film(
-            "gap",
-            s.cells("magnets"),
-            s.cells("teeth"),
-            np.full(6, 0.09 / 6),
-            lambda T, Ta, u: gap(0.5 * (T + Ta), u["speed_rpm"], 0.08, g),
-        ),
+        across_gap(s, "magnets", "teeth", 0.09, 0.08, g),
     ]
     for end, cover, x, area in SIDES:
         oil, face = s.cells(f"oil.{end}"), s.cells(cover)
@@ -185,26 +173,20 @@ def losses(s: Skeleton, d: Draw) -> list[Loss]:
 
         out.append(Loss(f"layer.{m}", s.cells(f"layer.{m}"), np.full(6, 0.15 / 6), bars))
     for end, cover, x, _ in SIDES:
-        P = 30.0 * d.factor(f"grease-{end}", 0.25)
-        grease = lambda T, u, P=P: friction(T, abs(u["speed_rpm"]) / RATED, P, 0.004)  # noqa: E731
+        grease = bearing(30.0 * d.factor(f"grease-{end}", 0.25), RATED, 0.004)
         share = (0.53 if end == "weld" else 0.47) * 0.4
         out += [
-            Loss(f"{end}", s.cells(end), np.full(5, share / 5), lambda T, u: copper(R, u["current_A"], T)),
+            Loss(f"{end}", s.cells(end), np.full(5, share / 5), joule(R)),
             Loss(f"grease.{end}", np.array([s.cell(cover, 0.999), s.cell("rotor", x)]), np.array([0.7, 0.3]), grease),
         ]
     return out
 
 
-def machine(d: Draw, change: Change) -> Machine:
-    s = skeleton([*bodies(d), *change.bodies], [*joints(d), *change.joints])
-    sides, back = (
-        (s.cells("oil.weld"), s.cells("oil.bend")),
-        (s.cell("warm", 0), s.cell("cooled", 0), s.cell("tank", 0)),
-    )
-    loop = OilLoop(
-        sides, back, d.factor("flow", 0.03), d.between("weld share", 0.47, 0.53), 60.0 * d.factor("cooler", 0.15)
-    )
-    return Machine(s, (*films(s, d), loop, *losses(s, d), *change.terms(s)))
+def oil(s: Skeleton, d: Draw) -> list[OilLoop]:
+    sides = s.cells("oil.weld"), s.cells("oil.bend")
+    back = s.cell("warm", 0), s.cell("cooled", 0), s.cell("tank", 0)
+    weld, UA = d.between("weld share", 0.47, 0.53), 60.0 * d.factor("cooler", 0.15)
+    return [OilLoop(sides, back, d.factor("flow", 0.03), weld, UA)]
 
 
 def drive(current: Array, speed: Array, flow: Array, wind: Array) -> dict[str, Array]:
@@ -232,45 +214,6 @@ def passes(rng: Rng, at: Array) -> dict[str, Array]:
     return drive(current, speed, levels(at, rng, 6.5, 12.0, 14.0), levels(at, rng, 0.0, 25.0, 4.0))
 
 
-PLANS = (
-    Plan("direct current", "calibrate", 75.0, direct),
-    Plan("load", "calibrate", 75.0, load),
-    Plan("speeds", "calibrate", 75.0, speeds),
-    Plan("mountain pass", "validate", 75.0, passes),
-    Plan("way home", "hold-out", 75.0, passes),
-)
-MISSING = (
-    Hidden("road wind@housing", lambda a: airflow("housing", a), 60.0),
-    Hidden("draught@rear", lambda a: draught("rear", a), 20.0),
-    Hidden("windage@rotor", lambda a: heating("rotor", a, (3.0, 2.8)), 15.0),
-    Hidden("load loss@magnets", lambda a: heating("magnets", a, (2.0, 1.8), (2.0, 2.0)), 60.0),
-    Hidden("ac copper@layer.4", lambda a: heating("layer.4", a, (2.0, 1.8), (2.0, 2.0), fade=0.002), 60.0),
-    Hidden("loop currents@layer.1", lambda a: heating("layer.1", a, current=(2.0, 2.0)), 150.0),
-    Hidden("terminals@weld", lambda a: bridge("terminals", a, "weld", "housing", (0.9, 0.1)), 15.0),
-    Hidden("blocked nozzles@weld", lambda a: covered(("spray.weld",), a), 0.9),
-    Hidden("heat@front", lambda a: heating("front", a), 200.0),
-)
-PASSING = (
-    Hidden("draught@housing", lambda a: draught("housing", a), 60.0),
-    Hidden("heat@front", lambda a: heating("front", a), 250.0),
-    Hidden("pump@oil", lambda a: less("flow_l_min", a), 1.0),
-    Hidden("cover@housing", lambda a: covered(("drum",), a), 0.9),
-    Hidden("meter@current_A", lambda a: less("current_A", a), 0.5, least=METER),
-)
-WORDS = {
-    "road wind@housing": ("convection@housing",),
-    "draught@rear": ("convection.constant@rear cover",),
-    "load loss@magnets": ("loss.rotor.load@rotor",),
-    "ac copper@layer.4": ("copper.ac@layer 4",),
-    "loop currents@layer.1": ("loss.winding@layer 1", "loss.factor@copper 1"),
-    "terminals@weld": ("coupling@weld side|housing", "coupling@housing|weld side"),
-    "blocked nozzles@weld": ("nozzles@weld side",),
-    "heat@front": ("loss.constant@front cover",),
-    "draught@housing": ("convection.constant@housing",),
-    "pump@oil": ("flow@circuit.spray", "input.factor@flow_l_min"),
-    "cover@housing": ("blockage@housing",),
-    "meter@current_A": ("input.factor@current_A",),
-}
 READ = {
     "layer.1": 0.5,
     "layer.4": 0.5,
@@ -283,55 +226,89 @@ READ = {
 }
 CALLED = {"layer.1": "layer 1", "layer.4": "layer 4", "weld": "weld side", "bend": "bend side", "yoke": "core"}
 CALLED |= {"front": "front cover", "tank": "spray.reservoir"}
-FAULTS = {
-    "sensor.gain@core": lambda seed: faults.gain("yoke", -0.12),
-    "sensor.lag@weld side": lambda seed: faults.slow("weld", 100.0),
-    "sensor.stem@layer 4": lambda seed: faults.stem("layer.4", 0.2),
-    "sensor.swap@bend side|weld side": lambda seed: faults.swapped("weld", "bend"),
-    "sensor.drift@housing": lambda seed: faults.drift("housing", 5.0),
-    "time.offset@load": lambda seed: Change(in_test={"load": faults.clock(READ, 150.0)}),
-    "input.factor@current_A": lambda seed: Change(in_test={"load": faults.factor("current_A", 1.15)}),
-    "ambient.offset@ambient": lambda seed: faults.offset("T_ambient", 5.0),
-    "frozen@front cover": lambda seed: faults.frozen("front", 0.5),
-}
-FOREIGN = {
-    "cable at bend side": lambda seed: foreign.cable("bend", 7.0, 3000.0),
-    "splash at housing": lambda seed: foreign.gusts("housing", 700.0, seed),
-    "demagnetisation at rotor": lambda seed: foreign.runaway("magnets", 80.0, 60.0),
-    "heater at front cover": lambda seed: foreign.hot_spell("front", 200.0),
-}
-ABSORBED = {
-    "housing fit": lambda seed: Change({"fit": 0.2}),
-    "slot sides": lambda seed: Change({"wall": 0.3}),
-    "film.spray": lambda seed: Change({"spray": 0.35}),
-    "loss.iron": lambda seed: Change({"iron": 2.2, "eddy": 2.2}),
-}
-TENSE = {
-    "fit": 0.25,
-    "wall": 0.2,
-    "spray": 0.2,
-    "cooler": 0.15,
-    "iron": 0.15,
-    "ac": 0.2,
-    "wet rotor": 0.25,
-    "still": 0.15,
-}
 PARTS = {node: body for body, node in CALLED.items() if body != "tank"}
 PARTS |= {"rotor": "rotor", "housing": "housing", "rear cover": "rear", "layer 2": "layer.2", "layer 3": "layer.3"}
+
+
 HAIRPIN = Archetype(
-    "hairpin",
-    machine,
-    PLANS,
-    {body: Spot(body, x) for body, x in READ.items()},
-    {},
-    MISSING,
-    FAULTS,
-    FOREIGN,
-    ABSORBED,
-    TENSE,
-    PARTS,
-    PASSING,
-    Logger(20.0, 5.0, 0.1, (2.0, 12.0), 0.08),
-    CALLED,
-    WORDS,
+    name="hairpin",
+    bodies=bodies,
+    joints=joints,
+    terms=(films, oil, losses),
+    plans=(
+        Plan("direct current", "calibrate", 75.0, direct),
+        Plan("load", "calibrate", 75.0, load),
+        Plan("speeds", "calibrate", 75.0, speeds),
+        Plan("mountain pass", "validate", 75.0, passes),
+        Plan("way home", "hold-out", 75.0, passes),
+    ),
+    thermometers={body: Spot(body, x) for body, x in READ.items()},
+    missing=(
+        Hidden("road wind@housing", lambda a: airflow("housing", a), 60.0),
+        Hidden("draught@rear", lambda a: draught("rear", a), 20.0),
+        Hidden("windage@rotor", lambda a: heating("rotor", a, (3.0, 2.8)), 15.0),
+        Hidden("load loss@magnets", lambda a: heating("magnets", a, (2.0, 1.8), (2.0, 2.0)), 60.0),
+        Hidden("ac copper@layer.4", lambda a: heating("layer.4", a, (2.0, 1.8), (2.0, 2.0), fade=0.002), 60.0),
+        Hidden("loop currents@layer.1", lambda a: heating("layer.1", a, current=(2.0, 2.0)), 150.0),
+        Hidden("terminals@weld", lambda a: bridge("terminals", a, "weld", "housing", (0.9, 0.1)), 15.0),
+        Hidden("blocked nozzles@weld", lambda a: covered(("spray.weld",), a), 0.9),
+        Hidden("heat@front", lambda a: heating("front", a), 200.0),
+    ),
+    faults={
+        "sensor.gain@core": lambda seed: faults.gain("yoke", -0.12),
+        "sensor.lag@weld side": lambda seed: faults.slow("weld", 100.0),
+        "sensor.stem@layer 4": lambda seed: faults.stem("layer.4", 0.2),
+        "sensor.swap@bend side|weld side": lambda seed: faults.swapped("weld", "bend"),
+        "sensor.drift@housing": lambda seed: faults.drift("housing", 5.0),
+        "time.offset@load": lambda seed: Change(in_test={"load": faults.clock(READ, 150.0)}),
+        "input.factor@current_A": lambda seed: Change(in_test={"load": faults.factor("current_A", 1.15)}),
+        "ambient.offset@ambient": lambda seed: faults.offset("T_ambient", 5.0),
+        "frozen@front cover": lambda seed: faults.frozen("front", 0.5),
+    },
+    foreign={
+        "cable at bend side": lambda seed: foreign.cable("bend", 7.0, 3000.0),
+        "splash at housing": lambda seed: foreign.gusts("housing", 700.0, seed),
+        "demagnetisation at rotor": lambda seed: foreign.runaway("magnets", 80.0, 60.0),
+        "heater at front cover": lambda seed: foreign.hot_spell("front", 200.0),
+    },
+    absorbed={
+        "housing fit": lambda seed: Change({"fit": 0.2}),
+        "slot sides": lambda seed: Change({"wall": 0.3}),
+        "film.spray": lambda seed: Change({"spray": 0.35}),
+        "loss.iron": lambda seed: Change({"iron": 2.2, "eddy": 2.2}),
+    },
+    tense={
+        "fit": 0.25,
+        "wall": 0.2,
+        "spray": 0.2,
+        "cooler": 0.15,
+        "iron": 0.15,
+        "ac": 0.2,
+        "wet rotor": 0.25,
+        "still": 0.15,
+    },
+    parts=PARTS,
+    passing=(
+        Hidden("draught@housing", lambda a: draught("housing", a), 60.0),
+        Hidden("heat@front", lambda a: heating("front", a), 250.0),
+        Hidden("pump@oil", lambda a: less("flow_l_min", a), 1.0),
+        Hidden("cover@housing", lambda a: covered(("drum",), a), 0.9),
+        Hidden("meter@current_A", lambda a: less("current_A", a), 0.5, least=METER),
+    ),
+    logger=Logger(20.0, 5.0, 0.1, (2.0, 12.0), 0.08),
+    called=CALLED,
+    words={
+        "road wind@housing": ("convection@housing",),
+        "draught@rear": ("convection.constant@rear cover",),
+        "load loss@magnets": ("loss.rotor.load@rotor",),
+        "ac copper@layer.4": ("copper.ac@layer 4",),
+        "loop currents@layer.1": ("loss.winding@layer 1", "loss.factor@copper 1"),
+        "terminals@weld": ("coupling@weld side|housing", "coupling@housing|weld side"),
+        "blocked nozzles@weld": ("nozzles@weld side",),
+        "heat@front": ("loss.constant@front cover",),
+        "draught@housing": ("convection.constant@housing",),
+        "pump@oil": ("flow@circuit.spray", "input.factor@flow_l_min"),
+        "cover@housing": ("blockage@housing",),
+        "meter@current_A": ("input.factor@current_A",),
+    },
 )

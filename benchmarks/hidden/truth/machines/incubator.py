@@ -7,23 +7,21 @@ from numpy.typing import NDArray
 
 from hidden.truth import faults, foreign
 from hidden.truth.archetype import Archetype, Hidden, Plan, Spot
-from hidden.truth.body import Body, Joint, Skeleton, skeleton
+from hidden.truth.body import Body, Joint, Skeleton
 from hidden.truth.change import Change
 from hidden.truth.draw import Draw
 from hidden.truth.effects import METER, bridge, covered, draught, heating, less, room_air, switched, to_room
 from hidden.truth.films import plate_still, radiation
-from hidden.truth.machine import Film, Loss, Machine
-from hidden.truth.profile import steady
+from hidden.truth.machine import Array, Film, Loss
+from hidden.truth.profile import Rng, steady
 from hidden.truth.readings import Logger
 
-Array = NDArray[np.float64]
-Rng = np.random.Generator
 WATTS, STIRRER = 90.0, 2.5
 
 
 def bodies(d: Draw) -> list[Body]:
     def C(key: str, value: float) -> float:
-        return value * d.factor(f"capacity.{key}", 0.07)
+        return d.capacity(key, value, 0.07)
 
     return [
         Body("plate", C("plate", 420.0), 4, 0.15),
@@ -92,11 +90,6 @@ def losses(s: Skeleton, d: Draw) -> list[Loss]:
     ]
 
 
-def machine(d: Draw, change: Change) -> Machine:
-    s = skeleton([*bodies(d), *change.bodies], [*joints(d), *change.joints])
-    return Machine(s, (*films(s, d), *losses(s, d), *change.terms(s)))
-
-
 def switching(at: Array, rng: Rng, on: tuple[float, float], off: tuple[float, float]) -> Array:
     """0 and 1, held for minutes drawn between these."""
     ends, state = [0.0], []
@@ -122,77 +115,80 @@ def both(rng: Rng, at: Array) -> dict[str, Array]:
     return drive(switching(at, rng, (4.0, 12.0), (2.0, 6.0)), switching(at, rng, (10.0, 20.0), (8.0, 15.0)))
 
 
-PLANS = (
-    Plan("heat up and cool", "calibrate", 120.0, still),
-    Plan("stirred", "calibrate", 90.0, stirred),
-    Plan("night", "calibrate", 120.0, both),
-    Plan("day", "validate", 90.0, both),
-    Plan("weekend", "hold-out", 120.0, both),
-)
-MISSING = (
-    Hidden("draught@outer", lambda a: draught("outer", a), 8.0),
-    Hidden("leak@air", lambda a: room_air("air", a), 3.0),
-    Hidden("bridge@plate-outer", lambda a: bridge("screws", a, "plate", "outer", (0.5, 0.5)), 3.0),
-    Hidden("lamp@outer", lambda a: heating("outer", a), 60.0),
-    Hidden("sleeve@lid", lambda a: to_room("lid", lambda T, Ta, u: a * (((T - Ta) ** 2 + 4.0) / 1600.0) ** 0.17), 6.0),
-    Hidden("bridge@plate-rack", lambda a: bridge("shelf", a, "plate", "rack", (0.9, 0.1)), 4.0),
-)
-FAULTS = {
-    "sensor.gain@rack": lambda seed: faults.gain("rack", -0.12),
-    "sensor.lag@chamber": lambda seed: faults.slow("air", 150.0),
-    "sensor.stem@plate": lambda seed: faults.stem("plate", 0.2),
-    "sensor.swap@chamber|rack": lambda seed: faults.swapped("air", "rack"),
-    "sensor.drift@shell": lambda seed: faults.drift("outer", 3.0),
-    "time.offset@night": lambda seed: Change(in_test={"night": faults.clock(("plate", "air", "rack", "outer"), 240.0)}),
-    "input.factor@heater_on": lambda seed: Change(in_test={"stirred": faults.factor("heater_on", 1.25)}),
-    "ambient.offset@ambient": lambda seed: faults.offset("T_ambient", 4.0),
-    "clipped@plate": lambda seed: faults.clipped("plate", 0.65),
-}
-FOREIGN = {
-    "cable at rack": lambda seed: foreign.cable("rack", 1.2, 900.0),
-    "splash at shell": lambda seed: foreign.gusts("outer", 90.0, seed),
-    "heater at rack": lambda seed: foreign.hot_spell("rack", 14.0),
-}
-ABSORBED = {
-    "link.foam": lambda seed: Change({"foam": 2.5}),
-    "capacity.rack": lambda seed: Change({"capacity.rack": 1.9}),
-}
-PASSING = (
-    Hidden("lid open@air", lambda a: room_air("air", a), 12.0),
-    Hidden("draught@outer", lambda a: draught("outer", a), 12.0),
-    Hidden("lamp@outer", lambda a: heating("outer", a), 80.0),
-    Hidden("second heater@rack", lambda a: switched("rack", a, "heater_on"), 40.0),
-    Hidden("stirrer slower@air", lambda a: less("fan_on", a), 1.5),
-    Hidden("cover@outer", lambda a: covered(("outside",), a), 0.9),
-    Hidden("meter@heater_on", lambda a: less("heater_on", a), 0.7, least=METER),
-)
-WORDS = {
-    "draught@outer": ("convection.constant@shell",),
-    "leak@air": ("convection.constant@chamber", "convection.buoyant@chamber", "heat@chamber"),
-    "lid open@air": ("convection.constant@chamber", "convection.buoyant@chamber", "heat@chamber"),
-    "lamp@outer": ("loss.constant@shell",),
-    "bridge@plate-outer": ("coupling@plate|shell",),
-    "sleeve@lid": ("convection.buoyant@lid", "convection.constant@lid"),
-    "bridge@plate-rack": ("coupling@plate|rack",),
-    "second heater@rack": ("loss.constant@rack", "heat@rack"),
-    "stirrer slower@air": ("input.factor@fan_on",),
-    "cover@outer": ("blockage@shell",),
-    "meter@heater_on": ("input.factor@heater_on",),
-}
 INCUBATOR = Archetype(
-    "incubator",
-    machine,
-    PLANS,
-    {"plate": Spot("plate", 0.5), "air": Spot("air", 0.5), "rack": Spot("rack", 0.5), "outer": Spot("outer", 0.4)},
-    {},
-    MISSING,
-    FAULTS,
-    FOREIGN,
-    ABSORBED,
-    {"foam": 0.15, "stirred": 0.15, "still": 0.12, "hinge": 0.3, "feet": 0.25, "capacity.rack": 0.07},
-    {"plate": "plate", "chamber": "air", "wall": "inner", "shell": "outer", "rack": "rack", "lid": "lid"},
-    PASSING,
-    Logger(20.0, 10.0, 0.25, (2.0, 20.0), 0.15),
-    {"air": "chamber", "outer": "shell"},
-    WORDS,
+    name="incubator",
+    bodies=bodies,
+    joints=joints,
+    terms=(films, losses),
+    plans=(
+        Plan("heat up and cool", "calibrate", 120.0, still),
+        Plan("stirred", "calibrate", 90.0, stirred),
+        Plan("night", "calibrate", 120.0, both),
+        Plan("day", "validate", 90.0, both),
+        Plan("weekend", "hold-out", 120.0, both),
+    ),
+    thermometers={
+        "plate": Spot("plate", 0.5),
+        "air": Spot("air", 0.5),
+        "rack": Spot("rack", 0.5),
+        "outer": Spot("outer", 0.4),
+    },
+    missing=(
+        Hidden("draught@outer", lambda a: draught("outer", a), 8.0),
+        Hidden("leak@air", lambda a: room_air("air", a), 3.0),
+        Hidden("bridge@plate-outer", lambda a: bridge("screws", a, "plate", "outer", (0.5, 0.5)), 3.0),
+        Hidden("lamp@outer", lambda a: heating("outer", a), 60.0),
+        Hidden(
+            "sleeve@lid", lambda a: to_room("lid", lambda T, Ta, u: a * (((T - Ta) ** 2 + 4.0) / 1600.0) ** 0.17), 6.0
+        ),
+        Hidden("bridge@plate-rack", lambda a: bridge("shelf", a, "plate", "rack", (0.9, 0.1)), 4.0),
+    ),
+    faults={
+        "sensor.gain@rack": lambda seed: faults.gain("rack", -0.12),
+        "sensor.lag@chamber": lambda seed: faults.slow("air", 150.0),
+        "sensor.stem@plate": lambda seed: faults.stem("plate", 0.2),
+        "sensor.swap@chamber|rack": lambda seed: faults.swapped("air", "rack"),
+        "sensor.drift@shell": lambda seed: faults.drift("outer", 3.0),
+        "time.offset@night": lambda seed: Change(
+            in_test={"night": faults.clock(("plate", "air", "rack", "outer"), 240.0)}
+        ),
+        "input.factor@heater_on": lambda seed: Change(in_test={"stirred": faults.factor("heater_on", 1.25)}),
+        "ambient.offset@ambient": lambda seed: faults.offset("T_ambient", 4.0),
+        "clipped@plate": lambda seed: faults.clipped("plate", 0.65),
+    },
+    foreign={
+        "cable at rack": lambda seed: foreign.cable("rack", 1.2, 900.0),
+        "splash at shell": lambda seed: foreign.gusts("outer", 90.0, seed),
+        "heater at rack": lambda seed: foreign.hot_spell("rack", 14.0),
+    },
+    absorbed={
+        "link.foam": lambda seed: Change({"foam": 2.5}),
+        "capacity.rack": lambda seed: Change({"capacity.rack": 1.9}),
+    },
+    tense={"foam": 0.15, "stirred": 0.15, "still": 0.12, "hinge": 0.3, "feet": 0.25, "capacity.rack": 0.07},
+    parts={"plate": "plate", "chamber": "air", "wall": "inner", "shell": "outer", "rack": "rack", "lid": "lid"},
+    passing=(
+        Hidden("lid open@air", lambda a: room_air("air", a), 12.0),
+        Hidden("draught@outer", lambda a: draught("outer", a), 12.0),
+        Hidden("lamp@outer", lambda a: heating("outer", a), 80.0),
+        Hidden("second heater@rack", lambda a: switched("rack", a, "heater_on"), 40.0),
+        Hidden("stirrer slower@air", lambda a: less("fan_on", a), 1.5),
+        Hidden("cover@outer", lambda a: covered(("outside",), a), 0.9),
+        Hidden("meter@heater_on", lambda a: less("heater_on", a), 0.7, least=METER),
+    ),
+    logger=Logger(20.0, 10.0, 0.25, (2.0, 20.0), 0.15),
+    called={"air": "chamber", "outer": "shell"},
+    words={
+        "draught@outer": ("convection.constant@shell",),
+        "leak@air": ("convection.constant@chamber", "convection.buoyant@chamber", "heat@chamber"),
+        "lid open@air": ("convection.constant@chamber", "convection.buoyant@chamber", "heat@chamber"),
+        "lamp@outer": ("loss.constant@shell",),
+        "bridge@plate-outer": ("coupling@plate|shell",),
+        "sleeve@lid": ("convection.buoyant@lid", "convection.constant@lid"),
+        "bridge@plate-rack": ("coupling@plate|rack",),
+        "second heater@rack": ("loss.constant@rack", "heat@rack"),
+        "stirrer slower@air": ("input.factor@fan_on",),
+        "cover@outer": ("blockage@shell",),
+        "meter@heater_on": ("input.factor@heater_on",),
+    },
 )

@@ -2,43 +2,26 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
-from numpy.typing import NDArray
 
-from hidden.truth.body import Body, Joint, Skeleton, skeleton
+from hidden.truth import faults, foreign
+from hidden.truth.archetype import Archetype, Hidden, Plan, Spot
+from hidden.truth.body import Body, Joint, Skeleton
 from hidden.truth.change import Change
 from hidden.truth.draw import Draw
-from hidden.truth.films import channel, cylinder_still, gap, plate_still, radiation, stirred
-from hidden.truth.losses import bertotti, copper, friction
-from hidden.truth.machine import Film, Inputs, Loss, Machine
+from hidden.truth.effects import METER, airflow, covered, draught, heating, less, stirred_gap
+from hidden.truth.films import across_gap, channel, cylinder_still, plate_still, radiation, stirred
+from hidden.truth.losses import bearing, bertotti, joule
+from hidden.truth.machine import Array, Film, Inputs, Loss, Stream
+from hidden.truth.profile import Rng, levels, steady, until
 
-Array = NDArray[np.float64]
 RATED = 4000.0
 COPPER, STEEL, ALUMINIUM = -2e-4, -8e-4, -1e-4
 ENDS = (("de", 0.0), ("nde", 1.0))
 
 
-@dataclass(frozen=True)
-class Stream:
-    """Water through cells one after the other; its heat capacity flow (W/K) is that of the recorded litres per minute
-    times `share`."""
-
-    name: str
-    cells: NDArray[np.int64]
-    share: float
-
-    def into(self, q: Array, T: Array, u: Inputs) -> None:
-        mcp = self.share * u["flow_l_min"] / 60000.0 * 1055.0 * 3380.0
-        before = np.concatenate([[u["T_coolant"]], T[self.cells[:-1]]])
-        q[self.cells] += mcp * (before - T[self.cells])
-
-
 def bodies(d: Draw) -> list[Body]:
-    def C(key: str, value: float) -> float:
-        return value * d.factor(f"capacity.{key}", 0.05)
-
+    C = d.capacity
     side = [
         b
         for end, _ in ENDS
@@ -65,9 +48,7 @@ def bodies(d: Draw) -> list[Body]:
 
 
 def joints(d: Draw) -> list[Joint]:
-    def G(key: str, value: float, sd: float) -> float:
-        return value * d.factor(key, sd)
-
+    G = d.conductance
     side = [
         j
         for end, x in ENDS
@@ -134,10 +115,7 @@ def inside(s: Skeleton, d: Draw) -> list[Film]:
         out += [Film(f"end.{end}.{k}", w, air, np.full(w.size, A / w.size), h) for k, (w, A) in enumerate(walls)]
     g = 0.8e-3 / d.factor("gap", 0.15)
 
-    def film(T: Array, Ta: Array, u: Inputs) -> Array:
-        return gap(0.5 * (T + Ta), u["speed_rpm"], 0.075, g)
-
-    return [*out, Film("gap", s.cells("magnets"), s.cells("teeth"), np.full(11, 0.09 / 11), film)]
+    return [*out, across_gap(s, "magnets", "teeth", 0.09, 0.075, g)]
 
 
 def losses(s: Skeleton, d: Draw) -> list[Loss]:
@@ -145,14 +123,11 @@ def losses(s: Skeleton, d: Draw) -> list[Loss]:
     kh, ke, kx = 160.0 * d.factor("iron", 0.15), 190.0 * d.factor("eddy", 0.2), 50.0 * d.factor("excess", 0.3)
     km = 40.0 * d.factor("magnet", 0.2)
 
-    def winding(T: Array, u: Inputs) -> Array:
-        return copper(R, u["current_A"], T)
-
     def iron(T: Array, u: Inputs) -> Array:
         return bertotti(T, u["speed_rpm"] / RATED, kh, ke, kx)
 
     out = [
-        Loss("slot", s.cells("slot"), np.full(11, 0.5 / 11), winding),
+        Loss("slot", s.cells("slot"), np.full(11, 0.5 / 11), joule(R)),
         Loss("teeth", s.cells("teeth"), np.full(11, 0.6 / 11), iron),
         Loss("yoke", s.cells("yoke"), np.full(11, 0.4 / 11), iron),
         Loss(
@@ -165,16 +140,138 @@ def losses(s: Skeleton, d: Draw) -> list[Loss]:
     for end, _ in ENDS:
         P = 22.0 * d.factor(f"bearing.{end}", 0.25)
 
-        def grease(T: Array, u: Inputs, P: float = P) -> Array:
-            return friction(T, u["speed_rpm"] / RATED, P, 0.004)
-
-        out.append(Loss(f"end.{end}", s.cells(f"winding.{end}"), np.full(5, 0.25 / 5), winding))
-        out.append(Loss(f"grease.{end}", s.cells(f"bearing.{end}"), np.full(2, 0.5), grease))
+        out.append(Loss(f"end.{end}", s.cells(f"winding.{end}"), np.full(5, 0.25 / 5), joule(R)))
+        out.append(Loss(f"grease.{end}", s.cells(f"bearing.{end}"), np.full(2, 0.5), bearing(P, RATED, 0.004)))
     return out
 
 
-def machine(d: Draw, change: Change) -> Machine:
-    """The machine of one draw with what is hidden in it."""
-    s = skeleton([*bodies(d), *change.bodies], [*joints(d), *change.joints])
-    water = Stream("water", s.cells("water"), d.factor("flow", 0.03))
-    return Machine(s, (*films(s, d), water, *losses(s, d), *change.terms(s)))
+def streams(s: Skeleton, d: Draw) -> list[Stream]:
+    share = d.factor("flow", 0.03)  # of the recorded litres per minute
+    return [Stream(s.cells("water"), "T_coolant", lambda T, u: share * u["flow_l_min"] / 60000.0 * 1055.0 * 3380.0)]
+
+
+def drive(at: Array, current: Array, speed: Array, wind: Array, flow: Array, inlet: Array) -> dict[str, Array]:
+    """The chiller starts 5 K below `inlet` and is there after some minutes."""
+    warming = inlet - 5.0 * np.exp(-at / 200.0)
+    return {
+        "current_A": current,
+        "speed_rpm": speed,
+        "vehicle_speed_mps": wind,
+        "flow_l_min": flow,
+        "T_coolant": warming,
+    }
+
+
+def direct(rng: Rng, at: Array) -> dict[str, Array]:
+    """Direct current at standstill, then cooling down; the inlet steps up midway."""
+    current = levels(at, rng, 120.0, 220.0, 20.0) * until(at, 55.0, 1.0)
+    inlet = 44.0 + 8.0 * (at > 1800.0)
+    return drive(at, current, steady(at, 0.0), steady(at, 0.0), steady(at, 8.0), inlet)
+
+
+def load(rng: Rng, at: Array) -> dict[str, Array]:
+    flow = np.where(at > 2500.0, 7.0, 10.0)
+    return drive(at, levels(at, rng, 60.0, 260.0, 10.0), steady(at, 3000.0), steady(at, 0.0), flow, steady(at, 50.0))
+
+
+def speeds(rng: Rng, at: Array) -> dict[str, Array]:
+    speed = levels(at, rng, 500.0, 8000.0, 9.0)
+    return drive(at, levels(at, rng, 40.0, 160.0, 14.0), speed, steady(at, 0.0), steady(at, 8.0), steady(at, 48.0))
+
+
+def road(rng: Rng, at: Array) -> dict[str, Array]:
+    wind, inlet = levels(at, rng, 0.0, 25.0, 5.0), 50.0 + 4.0 * np.sin(at / 900.0 + 6.0 * rng.uniform())
+    return drive(
+        at, levels(at, rng, 40.0, 240.0, 4.0), levels(at, rng, 800.0, 7000.0, 6.0), wind, steady(at, 8.0), inlet
+    )
+
+
+NODES = (
+    "winding.slot",
+    "winding.de",
+    "winding.nde",
+    "stator",
+    "magnets",
+    "rotor",
+    "housing",
+    "shield.de",
+    "shield.nde",
+)
+PARTS = {n: {"winding.slot": "slot", "stator": "yoke"}.get(n, n) for n in NODES}
+
+JACKET = Archetype(
+    name="jacket",
+    bodies=bodies,
+    joints=joints,
+    terms=(films, streams, losses),
+    plans=(
+        Plan("standstill", "calibrate", 75.0, direct),
+        Plan("load", "calibrate", 75.0, load),
+        Plan("speeds", "calibrate", 75.0, speeds),
+        Plan("road", "validate", 75.0, road),
+        Plan("road-2", "hold-out", 75.0, road),
+    ),
+    thermometers={n: Spot(PARTS[n], 0.5) for n in NODES if n not in ("winding.nde", "rotor")},
+    baths={"bench": Spot("bench", 0.1)},
+    missing=(
+        Hidden("convection@shield.de", lambda a: airflow("shield.de", a), 30.0),
+        Hidden("convection@housing", lambda a: airflow("housing", a), 80.0),
+        Hidden("convection.constant@shield.nde", lambda a: draught("shield.nde", a), 20.0),
+        Hidden("windage@rotor", lambda a: heating("rotor", a, (3.0, 2.8)), 10.0),  # 240 degC in the magnets
+        Hidden("loss.rotor@magnets", lambda a: heating("magnets", a, (2.0, 1.8), fade=0.001), 60.0),
+        Hidden("loss.rotor.load@magnets", lambda a: heating("magnets", a, (2.0, 1.8), (2.0, 2.0)), 60.0),
+        Hidden("copper.ac@winding.slot", lambda a: heating("slot", a, (2.0, 1.8), (2.0, 2.0), fade=0.002), 60.0),
+        Hidden("gap.convection@magnets|stator", lambda a: stirred_gap(a, "magnets", "teeth"), 30.0),
+        Hidden("loss.constant@shield.nde", lambda a: heating("shield.nde", a), 200.0),
+    ),
+    faults={
+        "sensor.bias@housing": lambda seed: faults.bias("housing", 4.0),
+        "sensor.lag@winding.de": lambda seed: faults.slow("winding.de", 120.0),
+        "sensor.gain@stator": lambda seed: faults.gain("stator", -0.12),
+        "sensor.stem@magnets": lambda seed: faults.stem("magnets", 0.25),
+        "sensor.delay@winding.slot": lambda seed: faults.late("winding.slot", 90.0),
+        "sensor.drift@stator": lambda seed: faults.drift("stator", 4.0),
+        "sensor.swap@stator|winding.slot": lambda seed: faults.swapped("winding.slot", "stator"),
+        "ambient.offset@coolant": lambda seed: faults.offset("T_coolant", 5.0),
+        "frozen@shield.de": lambda seed: faults.frozen("shield.de", 0.5),
+        "clipped@winding.slot": lambda seed: faults.clipped("winding.slot", 0.6),
+    },
+    foreign={
+        "cable at winding.nde": lambda seed: foreign.cable("winding.nde", 8.0, 4000.0),
+        "demagnetisation at magnets": lambda seed: foreign.runaway("magnets", 60.0, 50.0),
+        "splash at shield.de": lambda seed: foreign.gusts("shield.de", 300.0, seed),
+        "rub at shield.nde": lambda seed: foreign.rub("bearing.nde", "rotor", "housing", 30.0),
+    },
+    absorbed={
+        "link.fit": lambda seed: Change({"fit": 0.2}),
+        "link.liner": lambda seed: Change({"liner": 0.25}),
+        "link.jacket": lambda seed: Change({"jacket": 0.3}),
+        "loss.iron": lambda seed: Change({"iron": 2.2, "eddy": 2.2}),
+    },
+    tense={
+        "fit": 0.25,
+        "liner": 0.2,
+        "jacket": 0.15,
+        "iron": 0.15,
+        "glue": 0.2,
+        "mount": 0.25,
+        "spigot-de": 0.25,
+        "potting-de": 0.25,
+        "gap": 0.15,
+        "magnet": 0.2,
+    },
+    parts=PARTS,
+    passing=(
+        Hidden("convection.constant@housing", lambda a: draught("housing", a), 60.0),
+        Hidden("convection.constant@shield.nde", lambda a: draught("shield.nde", a), 20.0),
+        Hidden("loss.constant@shield.nde", lambda a: heating("shield.nde", a), 200.0),
+        Hidden("pump@coolant", lambda a: less("flow_l_min", a), 1.5),
+        Hidden("cover@housing", lambda a: covered(("drum",), a), 0.9),
+        Hidden("meter@current_A", lambda a: less("current_A", a), 0.5, least=METER),
+    ),
+    words={
+        "pump@coolant": ("flow@stream.coolant", "input.factor@flow_l_min"),
+        "cover@housing": ("blockage@housing",),
+        "meter@current_A": ("input.factor@current_A",),
+    },
+)

@@ -3,28 +3,25 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
 from hidden.truth import faults, foreign
-from hidden.truth.archetype import Archetype, Hidden, Plan, Spot
-from hidden.truth.body import Body, Joint, Skeleton, skeleton
+from hidden.truth.archetype import Archetype, Hidden, Plan, Spot, no_tempco
+from hidden.truth.body import Body, Joint, Skeleton
 from hidden.truth.change import Change
 from hidden.truth.draw import Draw
 from hidden.truth.effects import METER, covered, draught, heating, joined, less, spinning, switched, warming
-from hidden.truth.films import cylinder_still, gap, plate_still, radiation
-from hidden.truth.losses import ALPHA
-from hidden.truth.machine import Film, Loss, Machine
-from hidden.truth.profile import levels, steady, until
+from hidden.truth.films import across_gap, cylinder_still, plate_still, radiation
+from hidden.truth.losses import ALPHA, joule
+from hidden.truth.machine import Array, Film, Loss
+from hidden.truth.profile import Rng, levels, steady, until
 from hidden.truth.readings import Logger
 
-Array = NDArray[np.float64]
-Rng = np.random.Generator
 R20, ALUMINIUM = 0.19, -1e-4  # ohm per phase, three of them
 
 
 def bodies(d: Draw) -> list[Body]:
     def C(key: str, value: float) -> float:
-        return value * d.factor(f"capacity.{key}", 0.06)
+        return d.capacity(key, value, 0.06)
 
     return [
         Body("copper", C("copper", 42.0), 5, 3.0, -2e-4),
@@ -56,22 +53,16 @@ def films(s: Skeleton, d: Draw) -> list[Film]:
     def plate(T: Array, Ta: Array, u) -> Array:
         return still * plate_still(T, Ta, 0.12) + radiation(T, Ta, 0.1)
 
-    def air(T: Array, Ta: Array, u) -> Array:
-        return gap(0.5 * (T + Ta), u["speed_rpm"], 0.014, g)
-
     return [
         Film("box", s.cells("case"), "T_ambient", np.full(6, 0.013 / 6), box),
         Film("lid", s.cells("lid"), "T_ambient", np.full(2, 0.0015), box),
         Film("plate", s.cells("bracket"), "T_ambient", np.full(5, 0.012 / 5), plate),
-        Film("gap", s.cells("rotor"), s.cells("teeth")[:4], np.full(4, 0.0045 / 4), air),
+        across_gap(s, "rotor", "teeth", 0.0045, 0.014, g),
     ]
 
 
 def losses(s: Skeleton, d: Draw) -> list[Loss]:
     R, iron, grease = R20 * d.factor("copper", 0.04), 2.4 * d.factor("iron", 0.2), 0.8 * d.factor("grease", 0.3)
-
-    def winding(T: Array, u) -> Array:
-        return 3.0 * R * u["current_A"] ** 2 * (1.0 + ALPHA * (T - 20.0))
 
     def core(T: Array, u) -> float:
         f = u["speed_rpm"] / 3000.0
@@ -81,15 +72,10 @@ def losses(s: Skeleton, d: Draw) -> list[Loss]:
         return grease * (u["speed_rpm"] / 3000.0) ** 1.3 * np.exp(-0.008 * (T - 40.0))
 
     return [
-        Loss("winding", s.cells("copper"), np.full(5, 0.2), winding),
+        Loss("winding", s.cells("copper"), np.full(5, 0.2), joule(R)),
         Loss("iron", s.cells("teeth"), np.full(5, 0.2), core),
         Loss("grease", s.cells("rotor"), np.full(4, 0.25), bearings),
     ]
-
-
-def machine(d: Draw, change: Change) -> Machine:
-    s = skeleton([*bodies(d), *change.bodies], [*joints(d), *change.joints])
-    return Machine(s, (*films(s, d), *losses(s, d), *change.terms(s)))
 
 
 def drive(current: Array, speed: Array) -> dict[str, Array]:
@@ -109,77 +95,69 @@ def duty(rng: Rng, at: Array) -> dict[str, Array]:
     return drive(levels(at, rng, 0.5, 7.5, 3.0), levels(at, rng, 300.0, 4000.0, 4.0))
 
 
-PLANS = (
-    Plan("Stillstand", "calibrate", 50.0, held),
-    Plan("Leerlauf", "calibrate", 50.0, idle),
-    Plan("Takt 1", "calibrate", 50.0, duty),
-    Plan("Takt 2", "validate", 50.0, duty),
-    Plan("Takt 3", "hold-out", 50.0, duty),
-)
-MISSING = (
-    Hidden("draught@case", lambda a: draught("case", a), 1.5),
-    Hidden("shaft fan@case", lambda a: spinning("case", a), 1.0),
-    Hidden("coupling heat@rotor", lambda a: joined("rotor", a), 0.6),
-    Hidden("windage@rotor", lambda a: heating("rotor", a, (3.0, 2.7)), 1.0),
-    Hidden("bearing friction@rotor", lambda a: heating("rotor", a, (5 / 3, 1.2), fade=0.004), 3.0),
-    Hidden("ac copper@copper", lambda a: heating("copper", a, (2.0, 1.85), (2.0, 2.0), fade=0.002), 400.0),
-    Hidden("inverter iron@case", lambda a: switched("teeth", a / 16000.0, "switching_Hz"), 15.0),
-    Hidden(
-        "no tempco@copper",
-        lambda a: warming("copper", 3.0 * R20, a),
-        ALPHA,
-        ((("losses", "Kupfer", "alpha_1_K"), 0.0),),
-    ),
-)
-FAULTS = {
-    "sensor.gain@Wicklung": lambda seed: faults.gain("copper", -0.1),
-    "sensor.lag@Wicklung": lambda seed: faults.slow("copper", 120.0),
-    "sensor.stem@Gehaeuse": lambda seed: faults.stem("case", 0.25),
-    "time.offset@Takt 1": lambda seed: Change(in_test={"Takt 1": faults.clock(("copper", "case"), 150.0)}),
-    "input.factor@current_A": lambda seed: faults.factor("current_A", 1.12),
-    "ambient.offset@Umgebung": lambda seed: faults.offset("T_ambient", 4.0),
-    "frozen@Gehaeuse": lambda seed: faults.frozen("case", 0.5),
-}
-FOREIGN = {
-    "cable at Wicklung": lambda seed: foreign.cable("copper", 0.25, 60.0),
-    "splash at Gehaeuse": lambda seed: foreign.gusts("case", 12.0, seed),
-    "heater at Gehaeuse": lambda seed: foreign.hot_spell("lid", 4.0, 900.0, 2100.0),
-}
-ABSORBED = {"loss.Eisen": lambda seed: Change({"iron": 2.2}), "link.Luftspalt": lambda seed: Change({"bearings": 3.5})}
-PASSING = (
-    Hidden("draught@case", lambda a: draught("case", a), 1.5),
-    Hidden("heat@case", lambda a: heating("case", a), 15.0),
-    Hidden("cover@case", lambda a: covered(("box",), a), 0.9),
-    Hidden("meter@current_A", lambda a: less("current_A", -a), 0.25, least=METER),
-)
-WORDS = {
-    "draught@case": ("convection.constant@Gehaeuse",),
-    "shaft fan@case": ("convection.fan@Gehaeuse", "convection.rotation@Gehaeuse"),
-    "coupling heat@rotor": ("conduction.shaft@Rotor",),
-    "windage@rotor": ("windage@Rotor",),
-    # that the declared friction is a factor too small is the same heat by the same law at the same node
-    "bearing friction@rotor": ("bearing.friction@Rotor", "bearing.friction@Gehaeuse", "loss.factor@loss:Lager"),
-    "ac copper@copper": ("copper.ac@Wicklung",),
-    "inverter iron@case": ("iron.pwm@Gehaeuse",),
-    "no tempco@copper": ("copper.feedback@Kupfer",),
-    "heat@case": ("loss.constant@Gehaeuse",),
-    "cover@case": ("blockage@Gehaeuse",),
-    "meter@current_A": ("input.factor@current_A",),
-}
 SERVO = Archetype(
-    "servo",
-    machine,
-    PLANS,
-    {"copper": Spot("copper", 0.7), "case": Spot("case", 0.5)},
-    {},
-    MISSING,
-    FAULTS,
-    FOREIGN,
-    ABSORBED,
-    {"enamel": 0.2, "shrink": 0.2, "flange": 0.25, "still": 0.12, "iron": 0.2, "grease": 0.3},
-    {"Wicklung": "copper", "Gehaeuse": "case", "Rotor": "rotor"},
-    PASSING,
-    Logger(10.0, 5.0, 0.1, (2.0, 10.0)),
-    {"copper": "Wicklung", "case": "Gehaeuse", "ambient": "Umgebung"},
-    WORDS,
+    name="servo",
+    bodies=bodies,
+    joints=joints,
+    terms=(films, losses),
+    plans=(
+        Plan("Stillstand", "calibrate", 50.0, held),
+        Plan("Leerlauf", "calibrate", 50.0, idle),
+        Plan("Takt 1", "calibrate", 50.0, duty),
+        Plan("Takt 2", "validate", 50.0, duty),
+        Plan("Takt 3", "hold-out", 50.0, duty),
+    ),
+    thermometers={"copper": Spot("copper", 0.7), "case": Spot("case", 0.5)},
+    missing=(
+        Hidden("draught@case", lambda a: draught("case", a), 1.5),
+        Hidden("shaft fan@case", lambda a: spinning("case", a), 1.0),
+        Hidden("coupling heat@rotor", lambda a: joined("rotor", a), 0.6),
+        Hidden("windage@rotor", lambda a: heating("rotor", a, (3.0, 2.7)), 1.0),
+        Hidden("bearing friction@rotor", lambda a: heating("rotor", a, (5 / 3, 1.2), fade=0.004), 3.0),
+        Hidden("ac copper@copper", lambda a: heating("copper", a, (2.0, 1.85), (2.0, 2.0), fade=0.002), 400.0),
+        Hidden("inverter iron@case", lambda a: switched("teeth", a / 16000.0, "switching_Hz"), 15.0),
+        Hidden("no tempco@copper", lambda a: warming("copper", 3.0 * R20, a), ALPHA, no_tempco("Kupfer")),
+    ),
+    faults={
+        "sensor.gain@Wicklung": lambda seed: faults.gain("copper", -0.1),
+        "sensor.lag@Wicklung": lambda seed: faults.slow("copper", 120.0),
+        "sensor.stem@Gehaeuse": lambda seed: faults.stem("case", 0.25),
+        "time.offset@Takt 1": lambda seed: Change(in_test={"Takt 1": faults.clock(("copper", "case"), 150.0)}),
+        "input.factor@current_A": lambda seed: faults.factor("current_A", 1.12),
+        "ambient.offset@Umgebung": lambda seed: faults.offset("T_ambient", 4.0),
+        "frozen@Gehaeuse": lambda seed: faults.frozen("case", 0.5),
+    },
+    foreign={
+        "cable at Wicklung": lambda seed: foreign.cable("copper", 0.25, 60.0),
+        "splash at Gehaeuse": lambda seed: foreign.gusts("case", 12.0, seed),
+        "heater at Gehaeuse": lambda seed: foreign.hot_spell("lid", 4.0, 900.0, 2100.0),
+    },
+    absorbed={
+        "loss.Eisen": lambda seed: Change({"iron": 2.2}),
+        "link.Luftspalt": lambda seed: Change({"bearings": 3.5}),
+    },
+    tense={"enamel": 0.2, "shrink": 0.2, "flange": 0.25, "still": 0.12, "iron": 0.2, "grease": 0.3},
+    parts={"Wicklung": "copper", "Gehaeuse": "case", "Rotor": "rotor"},
+    passing=(
+        Hidden("draught@case", lambda a: draught("case", a), 1.5),
+        Hidden("heat@case", lambda a: heating("case", a), 15.0),
+        Hidden("cover@case", lambda a: covered(("box",), a), 0.9),
+        Hidden("meter@current_A", lambda a: less("current_A", -a), 0.25, least=METER),
+    ),
+    logger=Logger(10.0, 5.0, 0.1, (2.0, 10.0)),
+    called={"copper": "Wicklung", "case": "Gehaeuse", "ambient": "Umgebung"},
+    words={
+        "draught@case": ("convection.constant@Gehaeuse",),
+        "shaft fan@case": ("convection.fan@Gehaeuse", "convection.rotation@Gehaeuse"),
+        "coupling heat@rotor": ("conduction.shaft@Rotor",),
+        "windage@rotor": ("windage@Rotor",),
+        # that the declared friction is a factor too small is the same heat by the same law at the same node
+        "bearing friction@rotor": ("bearing.friction@Rotor", "bearing.friction@Gehaeuse", "loss.factor@loss:Lager"),
+        "ac copper@copper": ("copper.ac@Wicklung",),
+        "inverter iron@case": ("iron.pwm@Gehaeuse",),
+        "no tempco@copper": ("copper.feedback@Kupfer",),
+        "heat@case": ("loss.constant@Gehaeuse",),
+        "cover@case": ("blockage@Gehaeuse",),
+        "meter@current_A": ("input.factor@current_A",),
+    },
 )

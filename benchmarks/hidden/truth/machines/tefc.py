@@ -3,25 +3,25 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
-from hidden.truth.body import Body, Joint, Skeleton, skeleton
+from hidden.truth import faults, foreign
+from hidden.truth.archetype import Archetype, Hidden, Plan, Spot
+from hidden.truth.body import Body, Joint, Skeleton
 from hidden.truth.change import Change
 from hidden.truth.draw import Draw
-from hidden.truth.films import cylinder_still, gap, mixed, plate_still, radiation, stirred
-from hidden.truth.losses import bertotti, copper, friction
-from hidden.truth.machine import Film, Loss, Machine
+from hidden.truth.effects import METER, airflow, bridge, covered, draught, fading, heating, less, spinning, stirred_gap
+from hidden.truth.films import across_gap, cylinder_still, mixed, plate_still, radiation, stirred
+from hidden.truth.losses import bearing, bertotti, joule
+from hidden.truth.machine import Array, Film, Loss
+from hidden.truth.profile import Rng, levels, steady, until
 
-Array = NDArray[np.float64]
 RATED = 1500.0
 COPPER, STEEL, ALUMINIUM = -2e-4, -8e-4, -1e-4
 ENDS = (("de", 0.0), ("nde", 1.0))
 
 
 def bodies(d: Draw) -> list[Body]:
-    def C(key: str, value: float) -> float:
-        return value * d.factor(f"capacity.{key}", 0.05)
-
+    C = d.capacity
     side = [
         b
         for end, _ in ENDS
@@ -46,9 +46,7 @@ def bodies(d: Draw) -> list[Body]:
 
 
 def joints(d: Draw) -> list[Joint]:
-    def G(key: str, value: float, sd: float) -> float:
-        return value * d.factor(key, sd)
-
+    G = d.conductance
     side = [
         j
         for end, x in ENDS
@@ -120,40 +118,135 @@ def inside(s: Skeleton, d: Draw) -> list[Film]:
         out += [Film(f"end.{end}.{k}", w, air, np.full(w.size, A / w.size), h) for k, (w, A) in enumerate(walls)]
     g = 0.5e-3 / d.factor("gap", 0.15)
 
-    def film(T: Array, Ta: Array, u) -> Array:
-        return gap(0.5 * (T + Ta), u["speed_rpm"], 0.06, g)
-
-    return [*out, Film("gap", s.cells("rotor"), s.cells("teeth"), np.full(11, 0.068 / 11), film)]
+    return [*out, across_gap(s, "rotor", "teeth", 0.068, 0.06, g)]
 
 
 def losses(s: Skeleton, d: Draw) -> list[Loss]:
     R1, R2 = 0.5 * d.factor("copper", 0.04), 0.3 * d.factor("cage", 0.12)
     kh, ke, kx = 80.0 * d.factor("iron", 0.15), 50.0 * d.factor("eddy", 0.2), 20.0 * d.factor("excess", 0.3)
 
-    def winding(T: Array, u) -> Array:
-        return copper(R1, u["current_A"], T)
-
     def iron(T: Array, u) -> Array:
         return bertotti(T, u["speed_rpm"] / RATED, kh, ke, kx)
 
     out = [
-        Loss("slot", s.cells("slot"), np.full(11, 0.45 / 11), winding),
+        Loss("slot", s.cells("slot"), np.full(11, 0.45 / 11), joule(R1)),
         Loss("teeth", s.cells("teeth"), np.full(11, 0.55 / 11), iron),
         Loss("yoke", s.cells("yoke"), np.full(11, 0.45 / 11), iron),
-        Loss("cage", s.cells("rotor"), np.full(11, 1 / 11), lambda T, u: copper(R2, u["rotor_A"], T)),
+        Loss("cage", s.cells("rotor"), np.full(11, 1 / 11), joule(R2, "rotor_A")),
     ]
     for end, _ in ENDS:
         P = 14.0 * d.factor(f"bearing.{end}", 0.25)
 
-        def grease(T: Array, u, P: float = P) -> Array:
-            return friction(T, u["speed_rpm"] / RATED, P)
-
-        out.append(Loss(f"end.{end}", s.cells(f"winding.{end}"), np.full(5, 0.275 / 5), winding))
-        out.append(Loss(f"grease.{end}", s.cells(f"bearing.{end}"), np.full(2, 0.5), grease))
+        out.append(Loss(f"end.{end}", s.cells(f"winding.{end}"), np.full(5, 0.275 / 5), joule(R1)))
+        out.append(Loss(f"grease.{end}", s.cells(f"bearing.{end}"), np.full(2, 0.5), bearing(P, RATED)))
     return out
 
 
-def machine(d: Draw, change: Change) -> Machine:
-    """The machine of one draw with what is hidden in it."""
-    s = skeleton([*bodies(d), *change.bodies], [*joints(d), *change.joints])
-    return Machine(s, (*outside(s, d), *inside(s, d), *losses(s, d), *change.terms(s)))
+def drive(current: Array, speed: Array, wind: Array) -> dict[str, Array]:
+    """Rotor current: what the stator's exceeds 5 A of magnetising current, in quadrature; none at standstill."""
+    bars = np.where(speed > 0.0, 0.8 * np.sqrt(np.maximum(current**2 - 25.0, 0.0)), 0.0)
+    return {"current_A": current, "rotor_A": bars, "speed_rpm": speed, "vehicle_speed_mps": wind}
+
+
+def direct(rng: Rng, at: Array) -> dict[str, Array]:
+    """Direct current at standstill, then cooling down."""
+    current = levels(at, rng, 9.0, 14.0, 25.0) * (until(at, 55.0, 1.0))
+    return drive(current, steady(at, 0.0), steady(at, 0.0))
+
+
+def load(rng: Rng, at: Array) -> dict[str, Array]:
+    return drive(levels(at, rng, 6.0, 19.0, 12.0), steady(at, 1500.0), steady(at, 0.0))
+
+
+def speeds(rng: Rng, at: Array) -> dict[str, Array]:
+    return drive(levels(at, rng, 7.0, 15.0, 15.0), levels(at, rng, 400.0, 2800.0, 10.0), steady(at, 0.0))
+
+
+def road(rng: Rng, at: Array) -> dict[str, Array]:
+    wind = levels(at, rng, 0.0, 14.0, 5.0)
+    return drive(levels(at, rng, 7.0, 18.0, 4.0), levels(at, rng, 500.0, 2600.0, 6.0), wind)
+
+
+NODES = ("winding.slot", "winding.de", "winding.nde", "core", "rotor", "housing")
+NODES += ("flange.de", "flange.nde", "bearing.de", "bearing.nde")
+PARTS = {n: {"winding.slot": "slot", "core": "yoke"}.get(n, n) for n in NODES}
+
+TEFC = Archetype(
+    name="tefc",
+    bodies=bodies,
+    joints=joints,
+    terms=(outside, inside, losses),
+    plans=(
+        Plan("standstill", "calibrate", 75.0, direct),
+        Plan("load", "calibrate", 75.0, load),
+        Plan("speeds", "calibrate", 75.0, speeds),
+        Plan("road", "validate", 75.0, road),
+        Plan("road-2", "hold-out", 75.0, road),
+    ),
+    thermometers={
+        **{
+            n: Spot(PARTS[n], 0.5) for n in ("winding.slot", "winding.de", "core", "housing", "flange.de", "flange.nde")
+        },
+        "bearing.de": Spot("bearing.de", 0.3),
+    },
+    baths={"bench": Spot("bench", 0.1)},
+    missing=(
+        Hidden("convection@flange.de", lambda a: airflow("flange.de", a), 8.0),
+        Hidden("convection@housing", lambda a: airflow("housing", a), 60.0),
+        Hidden("conduction.bench@flange.de", lambda a: bridge("foot", a, "flange.de", "bench", (0.5, 0.1)), 8.0),
+        Hidden("convection.constant@flange.nde", lambda a: draught("flange.nde", a), 8.0),
+        Hidden("windage@rotor", lambda a: heating("rotor", a, (3.0, 2.8)), 60.0),
+        Hidden("copper.ac@winding.slot", lambda a: heating("slot", a, (2.0, 1.8), (2.0, 2.0), fade=0.002), 2e4),
+        Hidden("loss.rotor.load@rotor", lambda a: heating("rotor", a, (2.0, 1.7), (2.0, 2.0)), 2e4),
+        Hidden("loss.constant@flange.nde", lambda a: heating("flange.nde", a), 100.0),
+        Hidden("gap.convection@core|rotor", lambda a: stirred_gap(a, "rotor", "teeth"), 30.0),
+        Hidden("convection.rotation@rotor", lambda a: spinning("rotor", a), 20.0),
+        Hidden("coupling@winding.de|core", lambda a: bridge("potting", a, "winding.de", "teeth", (0.7, 0.0)), 40.0),
+        Hidden("fouling@housing", lambda a: fading("housing", a), 0.8),
+    ),
+    faults={
+        "sensor.bias@housing": lambda seed: faults.bias("housing", 4.0),
+        "sensor.lag@winding.de": lambda seed: faults.slow("winding.de", 120.0),
+        "sensor.gain@core": lambda seed: faults.gain("core", -0.12),
+        "sensor.stem@flange.nde": lambda seed: faults.stem("flange.nde", 0.2),
+        "sensor.delay@winding.slot": lambda seed: faults.late("winding.slot", 90.0),
+        "sensor.drift@core": lambda seed: faults.drift("core", 4.0),
+        "sensor.swap@flange.de|flange.nde": lambda seed: faults.swapped("flange.de", "flange.nde"),
+        "ambient.offset@ambient": lambda seed: faults.offset("T_ambient", 5.0),
+        "frozen@flange.de": lambda seed: faults.frozen("flange.de", 0.5),
+        "clipped@winding.slot": lambda seed: faults.clipped("winding.slot", 0.6),
+    },
+    foreign={
+        "cable at winding.nde": lambda seed: foreign.cable("winding.nde", 6.0, 4000.0),
+        "splash at housing": lambda seed: foreign.gusts("housing", 300.0, seed),
+        "rub at bearing.de": lambda seed: foreign.rub("bearing.de", "rotor", "housing", 40.0),
+        "heater at flange.nde": lambda seed: foreign.hot_spell("flange.nde", 60.0),
+    },
+    absorbed={
+        "link.fit": lambda seed: Change({"fit": 0.25}),
+        "link.liner": lambda seed: Change({"liner": 0.25}),
+        "loss.cage": lambda seed: Change({"cage": 2.0}),
+        "link.fins-fan": lambda seed: Change({"fan": 0.45}),
+    },
+    tense={
+        "fit": 0.25,
+        "liner": 0.2,
+        "fan": 0.15,
+        "iron": 0.15,
+        "seat-de": 0.25,
+        "feet": 0.25,
+        "capacity.housing": 0.1,
+        "cage": 0.12,
+        "spigot-de": 0.25,
+        "still": 0.15,
+    },
+    parts=PARTS,
+    passing=(
+        Hidden("convection.constant@housing", lambda a: draught("housing", a), 60.0),
+        Hidden("convection.constant@flange.de", lambda a: draught("flange.de", a), 15.0),
+        Hidden("loss.constant@flange.nde", lambda a: heating("flange.nde", a), 100.0),
+        Hidden("cover@housing", lambda a: covered(("fins",), a), 0.9),
+        Hidden("meter@current_A", lambda a: less("current_A", a), 0.5, least=METER),
+    ),
+    words={"cover@housing": ("blockage@housing",), "meter@current_A": ("input.factor@current_A",)},
+)

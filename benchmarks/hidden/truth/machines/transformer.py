@@ -5,49 +5,27 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
-from numpy.typing import NDArray
 
 from hidden.truth import faults, foreign
-from hidden.truth.archetype import Archetype, Hidden, Plan, Spot
-from hidden.truth.body import Body, Joint, Skeleton, skeleton
+from hidden.truth.archetype import Archetype, Hidden, Plan, Spot, no_tempco
+from hidden.truth.body import Body, Joint, Skeleton
 from hidden.truth.change import Change
 from hidden.truth.draw import Draw
 from hidden.truth.effects import METER, bridge, covered, draught, fading, heating, less, warming
 from hidden.truth.films import plate_still, radiation
 from hidden.truth.losses import ALPHA
-from hidden.truth.machine import Film, Inputs, Loss, Machine
-from hidden.truth.profile import levels, steady
+from hidden.truth.machine import Array, Film, Inputs, Loss, Stream
+from hidden.truth.profile import Rng, levels, steady
 from hidden.truth.readings import Logger
 
-Array = NDArray[np.float64]
-Rng = np.random.Generator
 R_LV, R_HV = 0.030, 0.034  # ohm per phase, both seen from the low-voltage side
 COILS = (("mid", 1.0), ("outer", 2.0))  # limbs that each stands for
 
 
-@dataclass(frozen=True)
-class Chimney:
-    """Air through the cells of a duct: as much as warm air draws (root of the rise), and what both fans blow (W/K)."""
-
-    name: str
-    cells: NDArray[np.int64]
-    draws: float
-    blows: tuple[float, float]
-
-    def into(self, q: Array, T: Array, u: Inputs) -> None:
-        rise = float(T[self.cells].mean()) - u["T_ambient"]
-        mcp = self.draws * max(rise + 1.0, 0.1) ** 0.5
-        mcp += self.blows[0] * u["stage1_on"] + self.blows[1] * u["stage2_on"]
-        before = np.concatenate([[u["T_ambient"]], T[self.cells[:-1]]])
-        q[self.cells] += mcp * (before - T[self.cells])
-
-
 def bodies(d: Draw) -> list[Body]:
     def C(key: str, value: float) -> float:
-        return value * d.factor(f"capacity.{key}", 0.06)
+        return d.capacity(key, value, 0.06)
 
     coils = [
         b
@@ -136,14 +114,19 @@ def losses(s: Skeleton, d: Draw) -> list[Loss]:
     return out
 
 
-def machine(d: Draw, change: Change) -> Machine:
-    s = skeleton([*bodies(d), *change.bodies], [*joints(d), *change.joints])
+def streams(s: Skeleton, d: Draw) -> list[Stream]:
     draws, blows = d.factor("chimney", 0.15), d.factor("blown", 0.15)
-    air = [
-        Chimney(f"duct.{a}", s.cells(f"duct.{a}"), 1.0 * n * draws, (9.0 * n * blows, 6.5 * n * blows))
-        for a, n in COILS
-    ]
-    return Machine(s, (*films(s, d), *air, *losses(s, d), *change.terms(s)))
+
+    def rising(n: float):
+        """As much air as warm air draws (root of the rise), and what both fans blow."""
+
+        def mcp(T: Array, u: Inputs) -> float:
+            drawn = n * draws * max(float(T.mean()) - u["T_ambient"] + 1.0, 0.1) ** 0.5
+            return drawn + (9.0 * n * blows * u["stage1_on"] + 6.5 * n * blows * u["stage2_on"])
+
+        return mcp
+
+    return [Stream(s.cells(f"duct.{a}"), "T_ambient", rising(n)) for a, n in COILS]
 
 
 def drive(current: Array, voltage: Array, one: Array, two: Array) -> dict[str, Array]:
@@ -175,83 +158,76 @@ def works(rng: Rng, at: Array) -> dict[str, Array]:
     return drive(levels(at, rng, 10.0, 105.0, 8.0), volts, turns(at, rng, 20.0), turns(at, rng, 20.0))
 
 
-PLANS = (
-    Plan("no load", "calibrate", 180.0, no_load),
-    Plan("short circuit", "calibrate", 180.0, shorted),
-    Plan("heat run", "calibrate", 180.0, heat_run),
-    Plan("Monday", "validate", 180.0, works),
-    Plan("Tuesday", "hold-out", 180.0, works),
-)
-NO_TEMPCO = tuple((("losses", loss, "alpha_1_K"), 0.0) for loss in ("low", "high"))
-MISSING = (
-    Hidden("draught@hv.outer", lambda a: draught("hv.outer", a), 15.0),
-    Hidden("cable@lv.outer", lambda a: draught("lv.outer", a), 10.0),
-    Hidden("lamp@clamp", lambda a: heating("clamp", a), 150.0),
-    Hidden("harmonics@hv.mid", lambda a: heating("hv.mid", a, current=(2.0, 1.9)), 400.0),
-    Hidden("harmonics@lv.outer", lambda a: heating("lv.outer", a, current=(2.0, 1.9)), 600.0),
-    Hidden("bridge@clamp-lv.outer", lambda a: bridge("blocks", a, "clamp", "lv.outer", (0.5, 0.0)), 8.0),
-    Hidden("dust@hv.outer", lambda a: fading("hv.outer", a), 0.5),
-    Hidden("no tempco@lv", lambda a: warming("lv.outer", 2.0 * R_LV, a), ALPHA, NO_TEMPCO[:1]),
-)
-PASSING = (
-    Hidden("draught@hv.outer", lambda a: draught("hv.outer", a), 20.0),
-    Hidden("lamp@clamp", lambda a: heating("clamp", a), 200.0),
-    Hidden("cover@hv.outer", lambda a: covered(("face.outer",), a), 0.9),
-    Hidden("stage slower@ducts", lambda a: less("stage1_on", a), 1.5),
-    Hidden("meter@current_A", lambda a: less("current_A", -a), 0.3, least=METER),
-)
-WORDS = {
-    "draught@hv.outer": ("convection.constant@HV outer",),
-    "cable@lv.outer": ("conduction.cable@LV outer", "convection.constant@LV outer"),
-    "lamp@clamp": ("loss.constant@clamp",),
-    "harmonics@hv.mid": ("loss.winding@HV middle",),
-    "harmonics@lv.outer": ("loss.winding@LV outer",),
-    "bridge@clamp-lv.outer": ("coupling@clamp|LV outer", "coupling@LV outer|clamp"),
-    "dust@hv.outer": ("fouling@HV outer",),
-    "no tempco@lv": ("copper.feedback@low",),
-    "cover@hv.outer": ("blockage@HV outer",),
-    "stage slower@ducts": ("input.factor@stage1_on",),
-    "meter@current_A": ("input.factor@current_A",),
-}
 READ = {"lv.mid": 0.6, "lv.outer": 0.5, "hv.mid": 0.5, "hv.outer": 0.5, "yoke": 0.5, "clamp": 0.5}
 CALLED = {"lv.mid": "LV middle", "lv.outer": "LV outer", "hv.mid": "HV middle", "hv.outer": "HV outer"}
-FAULTS = {
-    "sensor.gain@LV middle": lambda seed: faults.gain("lv.mid", -0.1),
-    "sensor.lag@LV outer": lambda seed: faults.slow("lv.outer", 400.0),
-    "sensor.stem@HV middle": lambda seed: faults.stem("hv.mid", 0.25),
-    "sensor.swap@HV middle|HV outer": lambda seed: faults.swapped("hv.mid", "hv.outer"),
-    "sensor.drift@yoke": lambda seed: faults.drift("yoke", 2.5),
-    "time.offset@heat run": lambda seed: Change(in_test={"heat run": faults.clock(READ, 420.0)}),
-    "input.factor@current_A": lambda seed: Change(in_test={"heat run": faults.factor("current_A", 1.15)}),
-    "ambient.offset@ambient": lambda seed: faults.offset("T_ambient", 5.0),
-    "frozen@clamp": lambda seed: faults.frozen("clamp", 0.4),
-}
-FOREIGN = {
-    "cable at LV outer": lambda seed: foreign.cable("lv.outer", 5.0, 6000.0),
-    "splash at HV outer": lambda seed: foreign.gusts("hv.outer", 500.0, seed),
-    "heater at clamp": lambda seed: foreign.hot_spell("clamp", 120.0),
-}
-ABSORBED = {
-    "link.tie": lambda seed: Change({"tie": 0.25}),
-    "chimney": lambda seed: Change({"chimney": 0.45}),
-    "loss.iron": lambda seed: Change({"iron": 2.0}),
-}
-TENSE = {"tie": 0.25, "chimney": 0.15, "still": 0.12, "blown": 0.15, "iron": 0.12, "corners": 0.2, "slit": 0.25}
-PARTS = {**{node: body for body, node in CALLED.items()}, "yoke": "yoke", "clamp": "clamp", "limbs": "limb.outer"}
+
+
 TRANSFORMER = Archetype(
-    "transformer",
-    machine,
-    PLANS,
-    {body: Spot(body, x) for body, x in READ.items()},
-    {},
-    MISSING,
-    FAULTS,
-    FOREIGN,
-    ABSORBED,
-    TENSE,
-    PARTS,
-    PASSING,
-    Logger(60.0, 10.0, 0.1, (15.0, 60.0), 0.1),
-    CALLED,
-    WORDS,
+    name="transformer",
+    bodies=bodies,
+    joints=joints,
+    terms=(films, streams, losses),
+    plans=(
+        Plan("no load", "calibrate", 180.0, no_load),
+        Plan("short circuit", "calibrate", 180.0, shorted),
+        Plan("heat run", "calibrate", 180.0, heat_run),
+        Plan("Monday", "validate", 180.0, works),
+        Plan("Tuesday", "hold-out", 180.0, works),
+    ),
+    thermometers={body: Spot(body, x) for body, x in READ.items()},
+    missing=(
+        Hidden("draught@hv.outer", lambda a: draught("hv.outer", a), 15.0),
+        Hidden("cable@lv.outer", lambda a: draught("lv.outer", a), 10.0),
+        Hidden("lamp@clamp", lambda a: heating("clamp", a), 150.0),
+        Hidden("harmonics@hv.mid", lambda a: heating("hv.mid", a, current=(2.0, 1.9)), 400.0),
+        Hidden("harmonics@lv.outer", lambda a: heating("lv.outer", a, current=(2.0, 1.9)), 600.0),
+        Hidden("bridge@clamp-lv.outer", lambda a: bridge("blocks", a, "clamp", "lv.outer", (0.5, 0.0)), 8.0),
+        Hidden("dust@hv.outer", lambda a: fading("hv.outer", a), 0.5),
+        Hidden("no tempco@lv", lambda a: warming("lv.outer", 2.0 * R_LV, a), ALPHA, no_tempco("low")),
+    ),
+    faults={
+        "sensor.gain@LV middle": lambda seed: faults.gain("lv.mid", -0.1),
+        "sensor.lag@LV outer": lambda seed: faults.slow("lv.outer", 400.0),
+        "sensor.stem@HV middle": lambda seed: faults.stem("hv.mid", 0.25),
+        "sensor.swap@HV middle|HV outer": lambda seed: faults.swapped("hv.mid", "hv.outer"),
+        "sensor.drift@yoke": lambda seed: faults.drift("yoke", 2.5),
+        "time.offset@heat run": lambda seed: Change(in_test={"heat run": faults.clock(READ, 420.0)}),
+        "input.factor@current_A": lambda seed: Change(in_test={"heat run": faults.factor("current_A", 1.15)}),
+        "ambient.offset@ambient": lambda seed: faults.offset("T_ambient", 5.0),
+        "frozen@clamp": lambda seed: faults.frozen("clamp", 0.4),
+    },
+    foreign={
+        "cable at LV outer": lambda seed: foreign.cable("lv.outer", 5.0, 6000.0),
+        "splash at HV outer": lambda seed: foreign.gusts("hv.outer", 500.0, seed),
+        "heater at clamp": lambda seed: foreign.hot_spell("clamp", 120.0),
+    },
+    absorbed={
+        "link.tie": lambda seed: Change({"tie": 0.25}),
+        "chimney": lambda seed: Change({"chimney": 0.45}),
+        "loss.iron": lambda seed: Change({"iron": 2.0}),
+    },
+    tense={"tie": 0.25, "chimney": 0.15, "still": 0.12, "blown": 0.15, "iron": 0.12, "corners": 0.2, "slit": 0.25},
+    parts={**{node: body for body, node in CALLED.items()}, "yoke": "yoke", "clamp": "clamp", "limbs": "limb.outer"},
+    passing=(
+        Hidden("draught@hv.outer", lambda a: draught("hv.outer", a), 20.0),
+        Hidden("lamp@clamp", lambda a: heating("clamp", a), 200.0),
+        Hidden("cover@hv.outer", lambda a: covered(("face.outer",), a), 0.9),
+        Hidden("stage slower@ducts", lambda a: less("stage1_on", a), 1.5),
+        Hidden("meter@current_A", lambda a: less("current_A", -a), 0.3, least=METER),
+    ),
+    logger=Logger(60.0, 10.0, 0.1, (15.0, 60.0), 0.1),
+    called=CALLED,
+    words={
+        "draught@hv.outer": ("convection.constant@HV outer",),
+        "cable@lv.outer": ("conduction.cable@LV outer", "convection.constant@LV outer"),
+        "lamp@clamp": ("loss.constant@clamp",),
+        "harmonics@hv.mid": ("loss.winding@HV middle",),
+        "harmonics@lv.outer": ("loss.winding@LV outer",),
+        "bridge@clamp-lv.outer": ("coupling@clamp|LV outer", "coupling@LV outer|clamp"),
+        "dust@hv.outer": ("fouling@HV outer",),
+        "no tempco@lv": ("copper.feedback@low",),
+        "cover@hv.outer": ("blockage@HV outer",),
+        "stage slower@ducts": ("input.factor@stage1_on",),
+        "meter@current_A": ("input.factor@current_A",),
+    },
 )
