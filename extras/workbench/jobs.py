@@ -13,10 +13,19 @@ from typing import Any
 from thermoscope import ThermoscopeError
 
 Tell = Callable[[str], None]
-PRELOAD = ["extras.workbench.steps", "lumped.build.pipeline", "thermoscope.commands.model.revise"]
-PRELOAD += ["validation.diagnosis", "validation.revision.revise", "thermoscope.case_folder.error_field"]
-PRELOAD += ["thermoscope.case_folder.network_run", "viz.viewer.page", "thermoscope.kernels"]
-PRELOAD += ["pyvista", "matplotlib"]
+PRELOAD = [
+    "extras.workbench.steps",
+    "lumped.build.pipeline",
+    "thermoscope.commands.model.revise",
+    "validation.diagnosis",
+    "validation.revision.revise",
+    "thermoscope.case_folder.error_field",
+    "thermoscope.case_folder.network_run",
+    "viz.viewer.page",
+    "thermoscope.kernels",
+    "pyvista",
+    "matplotlib",
+]
 
 
 class StoppedError(Exception):

@@ -12,8 +12,22 @@ from geom.description.materials import Material, filled, material
 from geom.description.part import Part, Port
 from geom.errors import InputError
 
-SECTIONS: tuple[str, ...] = ("machine", "ratings", "geometry", "outlines", "materials", "contacts", "films")
-SECTIONS += ("losses", "fans", "cooling", "spray", "sensors", "calibration", "bases")
+SECTIONS = (
+    "machine",
+    "ratings",
+    "geometry",
+    "outlines",
+    "materials",
+    "contacts",
+    "films",
+    "losses",
+    "fans",
+    "cooling",
+    "spray",
+    "sensors",
+    "calibration",
+    "bases",
+)
 LARGEST_RATING = 1e9  # in the unit of its key, as of all that a recording may hold
 ENVELOPE = "envelope_mm"
 
