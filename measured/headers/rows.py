@@ -15,6 +15,7 @@ from measured.headers.cells import TIMES, WITH_UNIT, is_date, is_reading, is_uni
 from measured.headers.layout import Layout, Row
 from measured.headers.words import READ, SETPOINT, is_time, quantities_of, roles_of, tokens
 
+NO_RECORD = "it is not a record"
 SAMPLE = 2000  # rows that are enough to find the table
 FIRM = 3  # rows of numbers in a row that are a table
 LEAST = 0.34  # share of a row's cells that are readings: cyclers write words beside them
@@ -31,9 +32,7 @@ def layout(rows: Sequence[Row], where: str) -> Layout:
     head = rows[:SAMPLE]
     widths = Counter(len(trimmed(row)) for row in head if _readings(row))
     if not widths:
-        raise InputError(
-            "no rows of readings in it: it is not a record", where, "columns of numbers, with a header or without"
-        )
+        raise InputError(f"no rows of readings in it: {NO_RECORD}", where, "columns of numbers, with or without names")
     most = widths[max(widths, key=lambda n: n * widths[n])]
     width = max(n for n, count in widths.items() if count >= 0.5 * most)
     if width < 2:
@@ -216,7 +215,7 @@ def _first(rows: Sequence[Row], width: int, where: str) -> int:
                     break
                 i -= 1  # a remark behind the readings of a first row
             return i
-    raise InputError("fewer than three rows of readings: it is not a record", where, "at least 3 rows of numbers")
+    raise InputError(f"fewer than three rows of readings: {NO_RECORD}", where, "at least 3 rows of numbers")
 
 
 def _valued(row: Row) -> bool:

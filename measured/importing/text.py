@@ -182,15 +182,18 @@ def _objects(text: str) -> tuple[Layout, Columns] | None:
 
 
 def _pairs(rows: list[dict[str, Any]]) -> list[dict[str, Any]]:
-    """A row for every reading, of objects that hold a name and a list of an instant with each reading; else none."""
-    out = []
-    for row in rows:
-        name = next((v for path, v in row.items() if TITLE.fullmatch(path)), "")
+    """A row for every reading, of objects that hold a name and a list of an instant with each reading; else none.
+
+    Of one name the words beside it tell them apart: a place."""
+    out, titles = [], [next((v for path, v in row.items() if TITLE.fullmatch(path)), "") for row in rows]
+    for row, name in zip(rows, titles, strict=True):
         pairs = next((v for v in row.values() if isinstance(v, list)), [])
         if not isinstance(name, str) or not name or any(not isinstance(p, list) or len(p) != 2 for p in pairs):
             return []
+        same = [other for other, title in zip(rows, titles, strict=True) if title == name] if pairs else []
+        apart = [v for path, v in row.items() if isinstance(v, str) and any(other.get(path) != v for other in same)]
         last = bool(pairs) and number(pairs[0][1]) > number(pairs[0][0])  # instants since 1970 are the larger numbers
-        out += [{"time": p[last], "signal": name, "value": p[not last]} for p in pairs]
+        out += [{"time": p[last], "signal": " ".join([name, *apart]), "value": p[not last]} for p in pairs]
     return out
 
 
