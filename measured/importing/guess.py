@@ -83,6 +83,7 @@ SIGNALS = ("V", "A", "mA")  # of amplifiers and transmitters
 QUALITY = ("q", "qc", "qual", "st", "sts")
 STAGES = "stages, as shares of a flow"
 ELSE = "is it in other units?"
+SCALED = 10.0  # degC: all of a record below it were scaled to a spread of one, or are of the winter
 UNTOLD = "neither name nor unit tells what it is"
 FOREIGN = re.compile(r"\[([^\]]*[A-Za-z°µ%][^\]]*)\]\s*$")  # what stands in brackets as units do
 ROUND = re.compile(r"\(([^()]*[A-Za-z°µ%][^()]*)\)\s*$")  # or remarks
@@ -181,7 +182,7 @@ def _by_readings(source: Source, every: list[Guess], target: Target) -> list[Gue
 def _read_as(source: Source, g: Guess, starts: Sequence[float], target: Target) -> Guess:
     """A column by its readings; a doubt, where a word of its name says otherwise."""
     label, untold = source.labels[g.column], g.doubt == UNTOLD
-    if g.quantity == "temperature" or source.units[g.column] or not (untold or starts):
+    if g.quantity == "temperature" or source.units[g.column] or axis_of(label) or not (untold or starts):
         return g
     if not is_like_temperature(source.numbers(g.column), starts, START_K if untold else ALIKE_K):
         return g
@@ -462,8 +463,13 @@ def _impossible(source: Source, g: Guess) -> str:
 
 
 def _in_fahrenheit(source: Source, every: list[Guess]) -> list[Guess]:
-    """With temperatures whose room and all others start where rooms do in Fahrenheit read or doubted as such."""
+    """With temperatures whose room and all others start where rooms do in Fahrenheit read or doubted as such, and
+    doubted where no unit says that they are as small as no room is."""
     hot = {g.column: g for g in every if g.quantity == "temperature" and g.unit == "degC" and (g.place or not g.used)}
+    sizes = [float(np.nanmax(np.abs(in_memory(source, g)))) for g in hot.values()]
+    if max(sizes, default=SCALED) < SCALED and not any(source.units[column] for column in hot):
+        small = f"never beyond {SCALED:g} degC: {ELSE}"
+        return [replace(g, doubt=small) if g.column in hot and g.used else g for g in every]
     starts = {c: v[0] for c, g in hot.items() if (v := (r := in_memory(source, g))[np.isfinite(r)]).size}
     rooms = [c for c in starts if Role.AMBIENT in roles_of(source.labels[c])[:1]]
     alike = len(starts) > 1 and np.ptp([*starts.values()]) < ALIKE_F

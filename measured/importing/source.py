@@ -19,8 +19,8 @@ from geom.description.names import plain_header
 from geom.description.roles import Role
 from geom.errors import InputError
 from measured.headers.cells import EMPTY, SWITCH, WITH_UNIT, is_date, is_unit, number, split_unit, unit_of
-from measured.headers.rows import UNIT_NAMES, Layout, layout, transposed, trimmed
-from measured.headers.words import RUNS, STATISTICS, is_rise, is_time, quantities_of, roles_of, tokens, without_rise
+from measured.headers.rows import NO_RECORD, UNIT_NAMES, Layout, called, layout, transposed, trimmed
+from measured.headers.words import RUNS, is_rise, is_time, quantities_of, roles_of, tokens, without_rise
 from measured.importing.long_table import side_by_side
 from measured.importing.text import DELIMITERS, decoded, split_cells, text_table
 from measured.recordings.csv_file import CHUNK
@@ -139,22 +139,17 @@ def read_sources(file: Path) -> list[Source]:
 
 
 def explained(sources: Sequence[Source], legend: Path) -> list[Source]:
-    """With names and units of columns as a file of words beside them gives them, and a note; what is made of a reading
-    keeps the word that says so."""
+    """With names and units of columns as a file of words beside them gives them, and a note."""
     lines = decoded(legend.read_bytes(), legend).splitlines(keepends=True)
     rows = split_cells(lines, max(DELIMITERS, key=lambda sign: sum(line.count(sign) for line in lines)))
     out = []
     for source in sources:
-        bare = {c: tuple(w for w in tokens(c) if w not in STATISTICS) for c in source.cells}
-        columns = [{tokens(row[j]): row for row in rows if row[j:]} for j in range(max(map(len, rows)))]
-        said = max(({c: of[t] for c, t in bare.items() if t in of} for of in columns), key=len)
-        labels, units = dict(source.labels), dict(source.units)
-        for column, row in said.items() if len(said) > 1 else ():
-            words = [cell for cell in row if tokens(cell) != bare[column] and re.search(r"[^\W\d]", cell)]
-            units[column] = next(filter(None, map(unit_of, words)), units[column])
-            labels[column] = " ".join([w for w in words if not is_unit(w)] + [*STATISTICS & {*tokens(column)}])
-        how = "says what columns are" if labels != source.labels else "is left out: it is not a record"
-        out.append(replace(source, labels=labels, units=units, notes=(*source.notes, f"{legend.name} {how}")))
+        pairs = zip(source.cells, called([*source.cells], rows), strict=True)
+        split = {c: split_unit(name) for c, name in pairs if name != c}
+        labels = {**source.labels, **{c: label for c, (label, _) in split.items()}}
+        units = {**source.units, **{c: unit for c, (_, unit) in split.items() if unit}}
+        note = f"{legend.name} {'says what columns are' if split else f'is left out: {NO_RECORD}'}"
+        out.append(replace(source, labels=labels, units=units, notes=(*source.notes, note)))
     return out
 
 

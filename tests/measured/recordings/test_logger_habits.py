@@ -15,7 +15,7 @@ from measured.headers.words import roles_of
 from measured.importing.aligned import Recording, shift
 from measured.importing.case_files import read_runs
 from measured.importing.clock import clock_of
-from measured.importing.guess import AS_FLOW, AS_ROOM, OF_SUPPLY, OF_WHAT, ON_OFF, VARIANT, guesses, in_memory
+from measured.importing.guess import AS_FLOW, AS_ROOM, ELSE, OF_SUPPLY, OF_WHAT, ON_OFF, VARIANT, guesses, in_memory
 from measured.importing.source import read_source
 from thermoscope.commands.test.new import Wishes, first_model, new_case as new
 
@@ -108,6 +108,16 @@ def test_other_devices_are_no_parts_and_the_motor_is_its_winding(tmp_path):
     network = tomllib.loads(first_model(runs, {}).first.text())
     assert network["nodes"]["motor"]["role"] == "winding"
     assert "the winding?" in found["Temp_Motor [°C]"][0].doubt
+
+
+def test_rows_of_statistics_under_names_and_readings_without_a_unit_of_their_own(tmp_path):
+    """As data frames write them, and as sets for machine learning scale them."""
+    header = "t [s],T_wdg [°C],T_wdg [°C],room [°C],I [A],I [A]\n,mean,max,mean,mean,max"
+    found, _ = read(file(tmp_path, header, "t", "W", WARM["W"] + 1, "A", "I", WARM["I"] + 1))
+    assert goes(found) == {"mean T_wdg [°C]": "mean-wdg", "mean room [°C]": "ambient", "mean I [A]": "current_A"}
+    scaled = [(v - v.mean()) / 20 for v in (WARM["W"], WARM["H"], WARM["A"] + np.sin(T))]
+    found, _ = read(file(tmp_path, "t [s],winding,frame,room,I [A]", "t", *scaled, "I"))
+    assert all(ELSE in found[name][0].doubt for name in ("winding", "frame", "room"))
 
 
 def test_what_hardly_warms_is_the_room_where_no_other_column_is(tmp_path, capsys):
