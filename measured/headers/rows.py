@@ -80,9 +80,9 @@ def layout(rows: Sequence[Row], where: str) -> Layout:
         once = [names.count(n) == 1 and (t or not _informative([g])) for g, n, t in zip(groups, names, clear)]
         names = [n if once[j] or not n else f"{split_unit(groups[j])[0]} {n}".strip() for j, n in enumerate(names)]
     others = [*above, *(_padded(rows[i], width) for i in block if i > header and i != units)]
-    made = next((r for r in others if {*map(str.lower, filter(None, r))} <= STATISTICS), ())
-    if made and len({*names}) < len(names):  # of one signal the mean and the largest
-        names = [f"{cell} {name}".strip() for cell, name in zip(made, names, strict=True)]
+    statistics = next((r for r in others if {*map(str.lower, filter(None, r))} <= STATISTICS), ())
+    if statistics and len({*names}) < len(names):  # of one signal the mean and the largest
+        names = [f"{cell} {name}".strip() for cell, name in zip(statistics, names, strict=True)]
     if not any(map(roles_of, names)) and (
         remarks := next((r for r in others if sum(map(bool, r)) >= 0.5 * width and any(map(roles_of, r[1:]))), None)
     ):
@@ -153,7 +153,7 @@ def called(names: list[str], before: Sequence[Row]) -> list[str]:
     cells = [{str(row[j]) for row in table.values() if j < len(row)} for j in range(max(map(len, table.values())))]
     scores = [(sum(bool(roles_of(c)) for c in of), sum(bool(quantities_of(c)) for c in of)) for of in cells]
     column = max(range(1, len(scores)), key=lambda j: scores[j])
-    said = {
+    words = {
         label: str(row[column]).strip() for label, row in table.items() if column < len(row) and any(scores[column])
     }
     heads = [str(cell).strip() for row in before if len(row) == len(scores) for cell in row]
@@ -161,7 +161,7 @@ def called(names: list[str], before: Sequence[Row]) -> list[str]:
     at = next(by_name, next((j for j, of in enumerate(cells) if j and all(map(is_unit, of))), len(scores)))
     units = {label: f" [{str(row[at]).strip()}]" for label, row in table.items() if at < len(row)}
     parts = zip(names, labels, strict=True)
-    return [f"{name} {said.get(label, '')}{units.get(label, '')}".strip() for name, label in parts]
+    return [f"{name} {words.get(label, '')}{units.get(label, '')}".strip() for name, label in parts]
 
 
 def _bare(name: str) -> tuple[str, ...]:

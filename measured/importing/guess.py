@@ -111,6 +111,7 @@ FASTEST, OF_STATOR = (f"{why}: {AS_WINDING}" for why in ("follows the heat faste
 AS_ROOM = "taken as the room, as no other column is: is the machine in there?"
 AS_FLOW = "the speed of a fan: taken as a flow, of which only the changes count"
 ON_OFF = "on and off, by its values alone: heat, cooling, or neither?"
+OF_READINGS = "made of readings that stand nowhere, by its name"
 VARIANT = "its name is that of another temperature and a word more: is it made of that?"
 AS_SPEED = "no speed was recorded: the frequency of the supply, as of one pole pair"
 OF_SUPPLY = "the frequency of the supply: the speed beside it says as much"
@@ -202,6 +203,8 @@ def _without_extremes(source: Source, every: list[Guess]) -> list[Guess]:
         mine = words.get(g.column, set())
         if mine & EXTREME and mine - EXTREME in means:
             every[i] = Guess(g.column, "", doubt=f"{FUNCTION}: of the reading beside it")
+        elif mine & EXTREME:
+            every[i] = replace(g, doubt=g.doubt or OF_READINGS)
         elif mine in parts and any(is_unknown(word) for other in bases if other < mine for word in mine - other):
             every[i] = replace(g, doubt=g.doubt or VARIANT)
     return every

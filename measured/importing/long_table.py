@@ -51,10 +51,10 @@ def side_by_side(
     columns = [[cells[i] for i in full] for cells in columns] if times else columns  # no remarks under the readings
     rest = [j for j in range(len(names)) if j != key and j not in times]
     values = [j for j in rest if set(tokens(names[j])) & VALUES]
-    readings = [j for j in rest if any(map(is_reading, columns[j]))]
-    if not times or not (values or len(readings) == 1):
+    numeric = [j for j in rest if any(map(is_reading, columns[j]))]
+    if not times or not (values or len(numeric) == 1):
         return {}, []
-    value = [*values, *readings][0]
+    value = [*values, *numeric][0]
     text = split_unit(names[value])[1]
     unit = text and f" [{text}]" if values else f" {names[value]}" if text or quantities_of(names[value]) else ""
     series: dict[str, dict[Any, Any]] = {}

@@ -187,8 +187,8 @@ def _signals(rows: list[dict[str, Any]]) -> list[dict[str, Any]]:
     units = [next((f" [{row[key]}]" for key in UNITS if isinstance(row.get(key), str)), "") for row in rows]
     for i, (row, title) in enumerate(zip(rows, [*titles], strict=True)):
         same = [other for other in rows if title in other.values()]
-        apart = [v for path, v in row.items() if isinstance(v, str) and any(other.get(path) != v for other in same)]
-        titles[i] = " ".join([title, *apart]) + units[i]
+        places = [v for path, v in row.items() if isinstance(v, str) and any(other.get(path) != v for other in same)]
+        titles[i] = " ".join([title, *places]) + units[i]
     signals = [(title, one) for title, (one,) in zip(titles, lists, strict=True)]
     if not all(isinstance(pair, list) and len(pair) == 2 for _, one in signals for pair in one):
         return [dict(zip(titles, row, strict=True)) for row in zip(*(one for _, one in signals))] if rows[1:] else rows

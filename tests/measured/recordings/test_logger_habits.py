@@ -15,7 +15,18 @@ from measured.headers.words import roles_of
 from measured.importing.aligned import Recording, shift
 from measured.importing.case_files import read_runs
 from measured.importing.clock import clock_of
-from measured.importing.guess import AS_FLOW, AS_ROOM, ELSE, OF_SUPPLY, OF_WHAT, ON_OFF, VARIANT, guesses, in_memory
+from measured.importing.guess import (
+    AS_FLOW,
+    AS_ROOM,
+    ELSE,
+    OF_READINGS,
+    OF_SUPPLY,
+    OF_WHAT,
+    ON_OFF,
+    VARIANT,
+    guesses,
+    in_memory,
+)
 from measured.importing.source import read_source
 from thermoscope.commands.test.new import Wishes, first_model, new_case as new
 
@@ -112,9 +123,14 @@ def test_other_devices_are_no_parts_and_the_motor_is_its_winding(tmp_path):
 
 def test_rows_of_statistics_under_names_and_readings_without_a_unit_of_their_own(tmp_path):
     """As data frames write them, and as sets for machine learning scale them."""
-    header = "t [s],T_wdg [°C],T_wdg [°C],room [°C],I [A],I [A]\n,mean,max,mean,mean,max"
-    found, _ = read(file(tmp_path, header, "t", "W", WARM["W"] + 1, "A", "I", WARM["I"] + 1))
-    assert goes(found) == {"mean T_wdg [°C]": "mean-wdg", "mean room [°C]": "ambient", "mean I [A]": "current_A"}
+    header = "t [s],T_wdg [°C],T_wdg [°C],room [°C],I [A],I [A],Batt [V]\n,mean,max,mean,mean,max,min"
+    found, _ = read(file(tmp_path, header, "t", "W", WARM["W"] + 1, "A", "I", WARM["I"] + 1, 13 + np.sin(T)))
+    assert found["min Batt [V]"][0].doubt == OF_READINGS
+    assert {c: to for c, to in goes(found).items() if to != "voltage_V"} == {
+        "mean T_wdg [°C]": "mean-wdg",
+        "mean room [°C]": "ambient",
+        "mean I [A]": "current_A",
+    }
     scaled = [(v - v.mean()) / 20 for v in (WARM["W"], WARM["H"], WARM["A"] + np.sin(T))]
     found, _ = read(file(tmp_path, "t [s],winding,frame,room,I [A]", "t", *scaled, "I"))
     assert all(ELSE in found[name][0].doubt for name in ("winding", "frame", "room"))
