@@ -100,10 +100,7 @@ class Dropped:
 
 def read(files: Sequence[Path], network: Network, tell: th.Progress) -> Dropped:
     """Recordings with the guesses of `thermoscope test new`. Raises InputError for a file that is not a record."""
-    target, recordings = th.target_of(network), []
-    for file in files:
-        tell(f"reading {file.name}")
-        recordings += th.read_runs(file)
+    target, recordings = th.target_of(network), th.read_runs(*files, tell=tell)
     return Dropped(tuple(th.Recording(s, c, th.guesses(s, c.columns, target)) for s, c in recordings), target)
 
 

@@ -13,8 +13,9 @@ import numpy as np
 from geom.errors import InputError
 from measured.headers.cells import TIMES, WITH_UNIT, is_date, is_reading, is_unit, number, split_unit, unit_of
 from measured.headers.layout import Layout, Row
-from measured.headers.words import READ, SETPOINT, is_time, quantities_of, roles_of, tokens
+from measured.headers.words import READ, SETPOINT, STATISTICS, is_time, quantities_of, roles_of, tokens
 
+NO_RECORD = "it is not a record"
 SAMPLE = 2000  # rows that are enough to find the table
 FIRM = 3  # rows of numbers in a row that are a table
 LEAST = 0.34  # share of a row's cells that are readings: cyclers write words beside them
@@ -31,9 +32,7 @@ def layout(rows: Sequence[Row], where: str) -> Layout:
     head = rows[:SAMPLE]
     widths = Counter(len(trimmed(row)) for row in head if _readings(row))
     if not widths:
-        raise InputError(
-            "no rows of readings in it: it is not a record", where, "columns of numbers, with a header or without"
-        )
+        raise InputError(f"no rows of readings in it: {NO_RECORD}", where, "columns of numbers, with or without names")
     most = widths[max(widths, key=lambda n: n * widths[n])]
     width = max(n for n, count in widths.items() if count >= 0.5 * most)
     if width < 2:
@@ -67,7 +66,7 @@ def layout(rows: Sequence[Row], where: str) -> Layout:
         right = "as many as names: decimal commas become points, or columns stand between ';'"
         raise InputError(f"{width} values under {len(names)} names", where, right)
     width = len(names) if len(names) > width else width
-    names = _called(names, rows[:header])
+    names = called(names, rows[:header])
     alone = [str(rows[i][0]) for i in range(header + 1, first) if len(trimmed(rows[i])) == 1 and rows[i][0]]
     names[0] = alone[-1] if alone and is_time(split_unit(alone[-1])[0]) and not is_time(names[0]) else names[0]
     above = [_padded(rows[i], width) for i in range(header) if len(trimmed(rows[i])) > 1 and not _readings(rows[i])]
@@ -81,6 +80,9 @@ def layout(rows: Sequence[Row], where: str) -> Layout:
         once = [names.count(n) == 1 and (t or not _informative([g])) for g, n, t in zip(groups, names, clear)]
         names = [n if once[j] or not n else f"{split_unit(groups[j])[0]} {n}".strip() for j, n in enumerate(names)]
     others = [*above, *(_padded(rows[i], width) for i in block if i > header and i != units)]
+    statistics = next((r for r in others if {*map(str.lower, filter(None, r))} <= STATISTICS), ())
+    if statistics and len({*names}) < len(names):  # of one signal the mean and the largest
+        names = [f"{cell} {name}".strip() for cell, name in zip(statistics, names, strict=True)]
     if not any(map(roles_of, names)) and (
         remarks := next((r for r in others if sum(map(bool, r)) >= 0.5 * width and any(map(roles_of, r[1:]))), None)
     ):
@@ -138,25 +140,33 @@ def _block(rows: Sequence[Row], first: int, width: int) -> list[int]:
     return block
 
 
-def _called(names: list[str], before: Sequence[Row]) -> list[str]:
-    """Names of channels with what a table before the readings calls them: there a row for each says what it is, or a
-    line as "T1 = winding"."""
-    labels = [split_unit(name)[0] for name in names]
+def called(names: list[str], before: Sequence[Row]) -> list[str]:
+    """Names of channels with what a table beside the readings calls them: there a row for each says what it is, or a
+    line as "T1 = winding"; the largest and the mean of one have its words."""
+    labels = [_bare(split_unit(name)[0]) for name in names]
     lines = (
         [*m.groups()] if len(row) == 1 and (m := EXPLAINED.match(str(row[0]))) else row for row in map(trimmed, before)
     )
-    table = {str(row[0]).strip(): row for row in lines if len(row) > 1 and str(row[0]).strip() in labels}
-    if len(table) < 2 or any(map(roles_of, names)):
+    table = {label: row for row in lines if len(row) > 1 and (label := _bare(str(row[0]))) in labels}
+    if len(table) < 2 or any(roles_of(name) for name, label in zip(names, labels, strict=True) if label in table):
         return names
     cells = [{str(row[j]) for row in table.values() if j < len(row)} for j in range(max(map(len, table.values())))]
-    scores = [sum(bool(roles_of(c) or quantities_of(c)) for c in column) for column in cells]
+    scores = [(sum(bool(roles_of(c)) for c in of), sum(bool(quantities_of(c)) for c in of)) for of in cells]
     column = max(range(1, len(scores)), key=lambda j: scores[j])
-    called = {label: str(row[column]).strip() for label, row in table.items() if column < len(row) and scores[column]}
-    heads = [str(cell).strip().lower() for row in before if len(row) == len(scores) for cell in row]
-    at = next((heads.index(word) % len(scores) for word in UNIT_NAMES if word in heads), len(scores))
+    words = {
+        label: str(row[column]).strip() for label, row in table.items() if column < len(row) and any(scores[column])
+    }
+    heads = [str(cell).strip() for row in before if len(row) == len(scores) for cell in row]
+    by_name = (i % len(scores) for i, head in enumerate(heads) if {*tokens(head)} & {*UNIT_NAMES})
+    at = next(by_name, next((j for j, of in enumerate(cells) if j and all(map(is_unit, of))), len(scores)))
     units = {label: f" [{str(row[at]).strip()}]" for label, row in table.items() if at < len(row)}
     parts = zip(names, labels, strict=True)
-    return [f"{name} {called.get(label, '')}{units.get(label, '')}".strip() for name, label in parts]
+    return [f"{name} {words.get(label, '')}{units.get(label, '')}".strip() for name, label in parts]
+
+
+def _bare(name: str) -> tuple[str, ...]:
+    """The words of a name but those for the largest, the mean and the like."""
+    return tuple(word for word in tokens(name) if word not in STATISTICS)
 
 
 def _legend(before: Sequence[Row], width: int) -> tuple[str, ...]:
@@ -216,7 +226,7 @@ def _first(rows: Sequence[Row], width: int, where: str) -> int:
                     break
                 i -= 1  # a remark behind the readings of a first row
             return i
-    raise InputError("fewer than three rows of readings: it is not a record", where, "at least 3 rows of numbers")
+    raise InputError(f"fewer than three rows of readings: {NO_RECORD}", where, "at least 3 rows of numbers")
 
 
 def _valued(row: Row) -> bool:

@@ -22,6 +22,7 @@ NOTHING, RATIO = WORDS["nothing"], WORDS["ratio"]
 DIFFERENCE, CLOCKS, LOSS, OUTER, CHANNELS = (WORDS[n] for n in ("difference", "clock", "loss", "outer", "channels"))
 EXTREME, SPREAD, MEAN, INSTRUMENT, MACHINE = (WORDS[n] for n in ("extreme", "spread", "mean", "instrument", "machine"))
 SPARE, RUNS, SUPPLY, GOES_IN, COMES_OUT = (WORDS[n] for n in ("spare", "runs", "supply", "goes_in", "comes_out"))
+STATISTICS = EXTREME | MEAN | SPREAD
 STAGE, PUMP, EXHAUST, CABINET, COLD = (WORDS[n] for n in ("stage", "pump", "exhaust", "cabinet", "cold"))
 INSTRUMENT |= CABINET
 PHRASES = {
@@ -135,6 +136,11 @@ def is_stator(name: str) -> bool:
 def is_setpoint(name: str) -> bool:
     """Is it what was asked for, rather than read?  SP1 is the first spot of a camera."""
     return bool(DESIRED.search(name)) or is_spoken(re.sub(r"(?i)\b[s]p ?\d+", " ", name), SETPOINT)
+
+
+def is_unknown(word: str) -> bool:
+    """Is a word none of a vocabulary, a number, a letter, or an end of a shaft?"""
+    return len(word) > 1 and not word.isdigit() and word not in TERMS and not END_OF_SHAFT.fullmatch(word.upper())
 
 
 def is_stage(name: str) -> bool:

@@ -23,12 +23,13 @@ from geom.escapes import toml_key, toml_value
 from geom.storage import abandoned, cache_folder, locked, write_whole
 from geom.text import visible
 from measured.headers.cells import unit_of
+from measured.headers.rows import NO_RECORD
 from measured.headers.words import COMES_OUT, GOES_IN, LOSS, quantities_of, roles_of, tokens
 from measured.importing.clock import Clock, clock_of, in_time_order, on_one_clock, runs_of
 from measured.importing.draft import Draft, sample_of
 from measured.importing.guess import Guess
 from measured.importing.relations import is_equal
-from measured.importing.source import Source, over_room, read_source, read_sources, source_of_recording
+from measured.importing.source import Source, explained, over_room, read_source, read_sources, source_of_recording
 from measured.input_folders import within_inputs
 from measured.recordings.data_table import DataTable, csv_text
 from measured.recordings.grid import LONGEST_S
@@ -148,12 +149,27 @@ def _file(draft: Draft, i: int) -> str:
     return f"{draft.name}.csv" if i == 0 else f"{draft.name}.recorder-{i + 1}.csv"
 
 
-def read_runs(file: Path, period_s: float | None = None) -> list[tuple[Source, Clock]]:
-    """A recording and its clock, rows in the order of time; one of each sheet, one from each row where it starts anew.
+def read_runs(
+    *files: Path, period_s: float | None = None, tell: Callable[[str], object] = str
+) -> list[tuple[Source, Clock]]:
+    """Recordings and their clocks, rows in order of time; one of each sheet, one from each row where it starts anew.
 
-    period_s : between rows, where it has no clock
+    A file of words beside others says what their columns are, or nothing.  period_s : between rows without a clock
     """
-    runs = [run for source in read_sources(file) for run in runs_of(with_loss(over_room(source)), period_s)]
+    sources, legends = list[Source](), list[Path]()
+    for file in dict.fromkeys(files):
+        tell(f"reading {file.name}")
+        try:
+            sources += read_sources(file)
+        except InputError as fault:
+            if NO_RECORD not in fault.what or len({*files}) == 1:
+                raise
+            legends.append(file)
+    if not sources:
+        read_sources(legends[0])
+    for legend in legends:
+        sources = explained(sources, legend)
+    runs = [run for source in sources for run in runs_of(with_loss(over_room(source)), period_s)]
     return [with_clock(run, period_s) for run in runs]
 
 

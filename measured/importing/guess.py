@@ -42,6 +42,7 @@ from measured.headers.words import (
     is_spoken,
     is_stage,
     is_stator,
+    is_unknown,
     is_within,
     quantities_of,
     roles_of,
@@ -82,6 +83,7 @@ SIGNALS = ("V", "A", "mA")  # of amplifiers and transmitters
 QUALITY = ("q", "qc", "qual", "st", "sts")
 STAGES = "stages, as shares of a flow"
 ELSE = "is it in other units?"
+SCALED = 10.0  # degC: all of a record below it were scaled to a spread of one, or are of the winter
 UNTOLD = "neither name nor unit tells what it is"
 FOREIGN = re.compile(r"\[([^\]]*[A-Za-z°µ%][^\]]*)\]\s*$")  # what stands in brackets as units do
 ROUND = re.compile(r"\(([^()]*[A-Za-z°µ%][^()]*)\)\s*$")  # or remarks
@@ -109,7 +111,10 @@ FASTEST, OF_STATOR = (f"{why}: {AS_WINDING}" for why in ("follows the heat faste
 AS_ROOM = "taken as the room, as no other column is: is the machine in there?"
 AS_FLOW = "the speed of a fan: taken as a flow, of which only the changes count"
 ON_OFF = "on and off, by its values alone: heat, cooling, or neither?"
+OF_READINGS = "made of readings that stand nowhere, by its name"
+VARIANT = "its name is that of another temperature and a word more: is it made of that?"
 AS_SPEED = "no speed was recorded: the frequency of the supply, as of one pole pair"
+OF_SUPPLY = "the frequency of the supply: the speed beside it says as much"
 LARGEST_HZ = 1000.0  # of a supply; inverters for motors switch faster
 QUICK = 0.6  # of the fastest: windings of the same machine
 PERCENT = 130.0  # of a load, at most
@@ -120,6 +125,7 @@ CERTAIN = (
     "a number that names a row",
     MANUAL,
     FUNCTION,
+    OF_SUPPLY,
     "--set gives it",
 )  # nothing is lost
 REMARK_WORDS = READ | SETPOINT | frozenset().union(*QUANTITY.values(), *ROLES.values())  # in brackets no unit
@@ -177,7 +183,7 @@ def _by_readings(source: Source, every: list[Guess], target: Target) -> list[Gue
 def _read_as(source: Source, g: Guess, starts: Sequence[float], target: Target) -> Guess:
     """A column by its readings; a doubt, where a word of its name says otherwise."""
     label, untold = source.labels[g.column], g.doubt == UNTOLD
-    if g.quantity == "temperature" or source.units[g.column] or not (untold or starts):
+    if g.quantity == "temperature" or source.units[g.column] or axis_of(label) or not (untold or starts):
         return g
     if not is_like_temperature(source.numbers(g.column), starts, START_K if untold else ALIKE_K):
         return g
@@ -187,15 +193,21 @@ def _read_as(source: Source, g: Guess, starts: Sequence[float], target: Target) 
 
 
 def _without_extremes(source: Source, every: list[Guess]) -> list[Guess]:
-    """Without the largest and the least beside a reading, of which that would be a function, too."""
+    """Without the largest and the least beside a reading, of which that would be a function, too; with a doubt at a
+    temperature whose name is that of another and a word that nobody knows."""
     words = {g.column: {*tokens(source.labels[g.column])} for g in every if g.used}
     means = [words[c] - MEAN for c in words if not words[c] & EXTREME]
-    return [
-        Guess(g.column, "", doubt=f"{FUNCTION}: of the reading beside it")
-        if g.used and words[g.column] & EXTREME and words[g.column] - EXTREME in means
-        else g
-        for g in every
-    ]
+    parts = [words[g.column] for g in every if g.place and not of_edge(roles_of(source.labels[g.column]))]
+    bases = [other for other in parts if any(len(word) > 1 for word in other - QUANTITY["temperature"])]
+    for i, g in enumerate(every):
+        mine = words.get(g.column, set())
+        if mine & EXTREME and mine - EXTREME in means:
+            every[i] = Guess(g.column, "", doubt=f"{FUNCTION}: of the reading beside it")
+        elif mine & EXTREME:
+            every[i] = replace(g, doubt=g.doubt or OF_READINGS)
+        elif mine in parts and any(is_unknown(word) for other in bases if other < mine for word in mine - other):
+            every[i] = replace(g, doubt=g.doubt or VARIANT)
+    return every
 
 
 def _without_functions(source: Source, every: list[Guess]) -> list[Guess]:
@@ -211,7 +223,8 @@ def _without_functions(source: Source, every: list[Guess]) -> list[Guess]:
     for g in every:
         why = functions.get(g.column, "")
         twin = next((c for c in hot if why == f"{SAME} '{c}'"), "")
-        distinct = twin and roles.get(g.column) and not {*tokens(twin)} < {*tokens(g.column)}
+        plain = not {*tokens(g.column)} & (EXTREME | MEAN) and not {*tokens(twin)} < {*tokens(g.column)}
+        distinct = twin and roles.get(g.column) and plain
         out.append(replace(g, doubt=why) if distinct else g.without(f"{FUNCTION}: {why}") if why else g)
     return out
 
@@ -258,13 +271,13 @@ def _products(source: Source, every: list[Guess], target: Target) -> list[Guess]
 
 
 def _with_speed(source: Source, every: list[Guess], target: Target) -> list[Guess]:
-    """With the frequency of a supply as the speed, where none was recorded and the model reads no frequency."""
-    if any(g.quantity == "speed" and g.feeds for g in every) or "frequency" in target.inputs.values():
-        return every
-    for i, g in enumerate(every):
+    """With the frequency of a supply as the speed where none was recorded, unless the model reads a frequency."""
+    turns = any(g.quantity == "speed" and g.feeds for g in every)
+    for i, g in enumerate(every if "frequency" not in target.inputs.values() else ()):
         if g.quantity == "frequency" and g.feeds and np.nanmax(in_memory(source, g)) <= LARGEST_HZ:
-            speed = _fed(replace(g, quantity="speed", doubt=AS_SPEED), source.labels[g.column], target)
-            return [*every[:i], speed, *every[i + 1 :]]
+            speed = replace(g, quantity="speed", doubt=AS_SPEED)
+            every[i] = g.without(OF_SUPPLY) if turns else _fed(speed, source.labels[g.column], target)
+            turns = True
     return every
 
 
@@ -324,7 +337,8 @@ def _read(source: Source, every: list[Guess], target: Target) -> list[Guess]:
         if np.nanmax(in_memory(source, g)) > warmest:
             every[i] = replace(g, doubt=OF_DEVICE)
         else:
-            stays = (len(instruments) == len(hot) and not g.place) or is_spoken(g.place, INSTRUMENT)
+            device = is_spoken(g.place, INSTRUMENT) and not is_spoken(g.place, MACHINE)
+            stays = (len(instruments) == len(hot) and not g.place) or device
             every[i] = replace(g, doubt=OF_INSTRUMENT) if stays else Guess(g.column, "", doubt=OF_INSTRUMENT)
     return every
 
@@ -356,7 +370,9 @@ def guess(source: Source, column: str, target: Target) -> Guess:
     flows = is_of_flow(label) or Role.COOLANT in roles_of(label)  # what a fan, a pump or a cooler does
     if flows and not worded and whole and (is_stage(label) or np.nanmax(values) <= 1):
         return _fed(Guess(column, "flow_share", "1", why="name", doubt=STAGES), label, target)
-    if quantity == "temperature" and not worded and whole:
+    flag = why == "unit" and quantity not in SWITCHED and {*values[np.isfinite(values)]} <= {0.0, 1.0}
+    still = not unit_text and np.nanmax(values) == np.nanmin(values)  # temperature_source
+    if flag or (quantity == "temperature" and whole and (still or not worded)):
         return Guess(column, "", doubt="a state, by its values")
     of_fan = quantity == "speed" and AIR in quantities_of(label) and not is_spoken(label, MACHINE)
     if of_fan and target.input_of(label, quantity) in ("", INPUTS["speed"]):
@@ -434,7 +450,8 @@ def _left_out(source: Source, column: str) -> str:
     if (odd := words & (NOTHING | RATIO if unit == "%" else NOTHING)) and unit in WEAK:
         return f"'{sorted(odd)[0]}' is nothing a model reads"
     identifies = "id" in words and not unit_text and bool((values[np.isfinite(values)] % 1 == 0).all())
-    return "a number that names a row" if identifies and _counts_on(source, column) else ""
+    identifies &= _counts_on(source, column) or {*values} == {values[0]} - {0.0}
+    return "a number that names a row" if identifies else ""
 
 
 def _impossible(source: Source, g: Guess) -> str:
@@ -449,8 +466,13 @@ def _impossible(source: Source, g: Guess) -> str:
 
 
 def _in_fahrenheit(source: Source, every: list[Guess]) -> list[Guess]:
-    """With temperatures whose room and all others start where rooms do in Fahrenheit read or doubted as such."""
+    """With temperatures whose room and all others start where rooms do in Fahrenheit read or doubted as such, and
+    doubted where no unit says that they are as small as no room is."""
     hot = {g.column: g for g in every if g.quantity == "temperature" and g.unit == "degC" and (g.place or not g.used)}
+    sizes = [float(np.nanmax(np.abs(in_memory(source, g)))) for g in hot.values()]
+    if max(sizes, default=SCALED) < SCALED and not any(source.units[column] for column in hot):
+        small = f"never beyond {SCALED:g} degC: {ELSE}"
+        return [replace(g, doubt=small) if g.column in hot and g.used else g for g in every]
     starts = {c: v[0] for c, g in hot.items() if (v := (r := in_memory(source, g))[np.isfinite(r)]).size}
     rooms = [c for c in starts if Role.AMBIENT in roles_of(source.labels[c])[:1]]
     alike = len(starts) > 1 and np.ptp([*starts.values()]) < ALIKE_F

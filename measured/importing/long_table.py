@@ -11,13 +11,14 @@ from pathlib import Path
 from typing import Any
 
 from geom.description.roles import Role
-from measured.headers.cells import EMPTY, is_date, is_reading, is_unit, number, split_unit
+from measured.headers.cells import EMPTY, is_date, is_reading, is_unit, number, split_unit, unit_of
 from measured.headers.layout import MISSING
 from measured.headers.words import RUNS, VOCABULARY, is_time, quantities_of, roles_of, tokens
 
 SERIES, VALUES = (frozenset(VOCABULARY["words"][name].split()) for name in ("series", "value"))
 MOST = 200  # signals in such a table
 RARE = 10  # readings of the other signals, beside which one alone is none
+CLOCK_UNITS = ("s", "ms", "min", "h")
 LEAST = 3  # readings of a signal, on average
 HOLD = "hold until the next reading"
 BOUNDARIES = ([Role.AMBIENT], [Role.COOLANT])
@@ -31,24 +32,31 @@ def side_by_side(
     Signals with times of their own hold from each of them to the next, as homes and controllers log what changes;
     temperatures of parts go on between them.
     """
-    keys = [j for j, name in enumerate(names) if set(tokens(name)) & SERIES and _is_key(columns[j])]
-    if not keys:
-        return {}, []
-    key = keys[0]
-    values = [j for j, name in enumerate(names) if j != key and set(tokens(name)) & VALUES]
     times = [
         j
         for j, name in enumerate(names)
-        if (is_time(name) or all(map(is_date, columns[j][:LEAST]))) and len(set(columns[j])) > 1
+        if (is_time(name) or unit_of(name) in CLOCK_UNITS or all(map(is_date, columns[j][:LEAST])))
+        and len(set(columns[j])) > 1
     ]
+    ids = [j for j, name in enumerate(names) if {"id", *SERIES} & {*tokens(name)} > {"id"}]  # sensor_id
+    numbered = [j for j in ids if all(map(is_reading, columns[j]))]
+    columns = [[f"{number(c):g}" for c in cells] if j in numbered else cells for j, cells in enumerate(columns)]
+    keys = [j for j, name in enumerate(names) if set(tokens(name)) & SERIES and _is_key(columns[j], j in numbered)]
+    keys = keys or [j for j, cells in enumerate(columns) if j not in times and _is_key(cells) and _are_signals(cells)]
+    if not keys:
+        return {}, []
+    key = keys[0]
     times += [j for j, name in enumerate(names) if times and j != key and set(tokens(name)) & RUNS]  # of several tests
     full = [i for i, instant in enumerate(zip(*(columns[j] for j in times))) if any(map(_text, instant))]
     columns = [[cells[i] for i in full] for cells in columns] if times else columns  # no remarks under the readings
     rest = [j for j in range(len(names)) if j != key and j not in times]
-    if not times or not (values or len(rest) == 1):
+    values = [j for j in rest if set(tokens(names[j])) & VALUES]
+    numeric = [j for j in rest if any(map(is_reading, columns[j]))]
+    if not times or not (values or len(numeric) == 1):
         return {}, []
-    value, unit = (values[0], "") if values else (rest[0], f" {names[rest[0]]}")
-    unit = f" [{text}]" if values and (text := split_unit(names[value])[1]) else unit
+    value = [*values, *numeric][0]
+    text = split_unit(names[value])[1]
+    unit = text and f" [{text}]" if values else f" {names[value]}" if text or quantities_of(names[value]) else ""
     series: dict[str, dict[Any, Any]] = {}
     clocks = list(zip(*(columns[j] for j in times), strict=True))
     signals = columns[key]
@@ -106,15 +114,21 @@ def _in_order(instants: Iterable[tuple[Any, ...]], series: Iterable[Iterable[Any
     return sorted(plain, key=lambda t: plain[t])
 
 
+def _are_signals(cells: Sequence[Any]) -> bool:
+    """Do most of its words say what a signal reads, and do they take turns or begin anew, as no state does?"""
+    words = [*dict.fromkeys(map(_text, cells))]
+    spoken = sum(bool(quantities_of(word) or roles_of(word)) for word in words)
+    turns = sum(a != b for a, b in itertools.pairwise(cells))
+    return len(words) > 2 and 2 * spoken > len(words) and (turns > len(cells) / 2 or turns == len(words) - 1)
+
+
 def _text(cell: Any) -> str:
     text = "" if cell is None else str(cell).strip()
     return "" if text in MISSING else text
 
 
-def _is_key(cells: Sequence[Any]) -> bool:
+def _is_key(cells: Sequence[Any], numbered: bool = False) -> bool:
     """Names of signals, that come again and again?"""
-    if any(map(is_reading, cells[:LEAST])):
-        return False
     counts = Counter(filter(None, map(_text, cells)))
     repeated = sum(counts.values()) >= LEAST * len(counts)
-    return 1 < len(counts) <= MOST and repeated and not any(map(is_reading, counts))
+    return 1 < len(counts) <= MOST and repeated and (numbered or not any(map(is_reading, counts)))

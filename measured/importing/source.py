@@ -19,10 +19,10 @@ from geom.description.names import plain_header
 from geom.description.roles import Role
 from geom.errors import InputError
 from measured.headers.cells import EMPTY, SWITCH, WITH_UNIT, is_date, is_unit, number, split_unit, unit_of
-from measured.headers.rows import UNIT_NAMES, Layout, layout, transposed, trimmed
+from measured.headers.rows import NO_RECORD, UNIT_NAMES, Layout, called, layout, transposed, trimmed
 from measured.headers.words import RUNS, is_rise, is_time, quantities_of, roles_of, tokens, without_rise
 from measured.importing.long_table import side_by_side
-from measured.importing.text import text_table
+from measured.importing.text import DELIMITERS, decoded, split_cells, text_table
 from measured.recordings.csv_file import CHUNK
 from measured.recordings.data_table import PIECE, DataTable
 from measured.recordings.formats import BOOK, READERS, TIME, guarded, read_recording, worksheets
@@ -136,6 +136,21 @@ def read_sources(file: Path) -> list[Source]:
     if suffix not in BINARY:
         return [source_of_table(file, *text_table(file))]
     return [source_of_recording(file, read_recording(file))]
+
+
+def explained(sources: Sequence[Source], legend: Path) -> list[Source]:
+    """With names and units of columns as a file of words beside them gives them, and a note."""
+    lines = decoded(legend.read_bytes(), legend).splitlines(keepends=True)
+    rows = split_cells(lines, max(DELIMITERS, key=lambda sign: sum(line.count(sign) for line in lines)))
+    out = []
+    for source in sources:
+        pairs = zip(source.cells, called([*source.cells], rows), strict=True)
+        split = {c: split_unit(name) for c, name in pairs if name != c}
+        labels = {**source.labels, **{c: label for c, (label, _) in split.items()}}
+        units = {**source.units, **{c: unit for c, (_, unit) in split.items() if unit}}
+        note = f"{legend.name} {'says what columns are' if split else f'is left out: {NO_RECORD}'}"
+        out.append(replace(source, labels=labels, units=units, notes=(*source.notes, note)))
+    return out
 
 
 def over_room(source: Source) -> Source:

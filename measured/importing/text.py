@@ -45,8 +45,8 @@ DEGREE = 5  # letters: every second header has one, and no page but the right on
 PAIR = r"[^\W\d]\w*=[^\s=]+(?: [^\s=\d][^\s=]*(?!\S))?"  # of a line that a program logged
 LOGGED = re.compile(rf"^(\d\S*[ T]\d\d:\S+|\d+:\d\d:\S+)(?=\s)[^=\n]*?((?:\s{PAIR})+)\s*$", re.MULTILINE)
 POINT = re.compile(r"^([^\s=,]+(?:,\S+=\S+)?) ([^\s=,]+=\S+?)[iu]? (\d{10,19})(?=\r?$)", re.MULTILINE)  # a,b=c d=5i 17
-SERIES = (("name", "label", "channel", "signal", "title", "target"), ("unit", "units"))  # of readings, in JSON
-TITLE = re.compile(rf"(?:.*\.)?_*(?:{'|'.join(SERIES[0])})_*")  # metric.__name__
+TITLE = re.compile(r"(?:.*\.)?_*(?:name|label|channel|signal|title|target)_*")  # of a signal in JSON: metric.__name__
+UNITS = ("unit", "units")
 # A serial monitor's time before each line, or one in brackets.
 ARROW = re.compile(r"^(?:(\d{1,2}:\d{2}:\d{2}[.,]\d+) -> |\[\s*(\d[\d:.,]*)\]:?\s+)", re.MULTILINE)
 FORTRAN = re.compile(r"(?<=[.\d]\d)[Dd](?=[-+]\d\d\b)")  # 2.4D+01
@@ -169,11 +169,7 @@ def _objects(text: str) -> tuple[Layout, Columns] | None:
         columns = {name: one for name, one in inside.items() if len(one) == most}
         table = zip(*columns.values(), strict=True)
         every = columns.pop(*columns) if len(columns) == 1 else [dict(zip(columns, row, strict=True)) for row in table]
-    rows = [_flat(one) for one in every]
-    if pairs := _pairs(rows):
-        rows = pairs
-    elif series := _series(rows):
-        rows = [dict(zip(series, row, strict=False)) for row in zip(*series.values(), strict=False)]
+    rows = _signals([_flat(one) for one in every])
     names = tuple(dict.fromkeys(name for row in rows for name in row))
     titles = {path.rpartition(".")[2]: title for path, title in outer.items() if path[-1:].isdigit() and title}
     return Layout(tuple(str(titles.get(name, name)) for name in names), ("",) * len(names), 0, len(names)), [
@@ -181,26 +177,26 @@ def _objects(text: str) -> tuple[Layout, Columns] | None:
     ]
 
 
-def _pairs(rows: list[dict[str, Any]]) -> list[dict[str, Any]]:
-    """A row for every reading, of objects that hold a name and a list of an instant with each reading; else none."""
-    out = []
-    for row in rows:
-        name = next((v for path, v in row.items() if TITLE.fullmatch(path)), "")
-        pairs = next((v for v in row.values() if isinstance(v, list)), [])
-        if not isinstance(name, str) or not name or any(not isinstance(p, list) or len(p) != 2 for p in pairs):
-            return []
-        last = bool(pairs) and number(pairs[0][1]) > number(pairs[0][0])  # instants since 1970 are the larger numbers
-        out += [{"time": p[last], "signal": name, "value": p[not last]} for p in pairs]
-    return out
-
-
-def _series(rows: list[dict[str, Any]]) -> dict[str, list[Any]]:
-    """Readings by names with their units, of objects that hold a name and a list each; empty for any others."""
+def _signals(rows: list[dict[str, Any]]) -> list[dict[str, Any]]:
+    """Of objects that hold a name and a list each a row for every reading, where it stands beside its instant, else one
+    for all of them; any others as they are.  Of one name the words beside it tell them apart: a place."""
     lists = [[value for value in row.values() if isinstance(value, list)] for row in rows]
-    heads = [[next((row[k] for k in keys if isinstance(row.get(k), str)), "") for keys in SERIES] for row in rows]
-    if len(rows) < 2 or any(len(one) != 1 for one in lists) or not all(name for name, _ in heads):
-        return {}
-    return {f"{name} [{unit}]" if unit else name: one for (name, unit), (one,) in zip(heads, lists, strict=True)}
+    titles = [next((v for path, v in row.items() if TITLE.fullmatch(path) and isinstance(v, str)), "") for row in rows]
+    if any(len(one) != 1 for one in lists) or not all(titles):
+        return rows
+    units = [next((f" [{row[key]}]" for key in UNITS if isinstance(row.get(key), str)), "") for row in rows]
+    for i, (row, title) in enumerate(zip(rows, [*titles], strict=True)):
+        same = [other for other in rows if title in other.values()]
+        places = [v for path, v in row.items() if isinstance(v, str) and any(other.get(path) != v for other in same)]
+        titles[i] = " ".join([title, *places]) + units[i]
+    signals = [(title, one) for title, (one,) in zip(titles, lists, strict=True)]
+    if not all(isinstance(pair, list) and len(pair) == 2 for _, one in signals for pair in one):
+        return [dict(zip(titles, row, strict=True)) for row in zip(*(one for _, one in signals))] if rows[1:] else rows
+    # Instants since 1970 are the larger numbers.
+    at = [bool(one) and number(one[0][1]) > number(one[0][0]) for _, one in signals]
+    return [
+        {"time": p[last], "signal": title, "value": p[not last]} for (title, one), last in zip(signals, at) for p in one
+    ]
 
 
 def _frame(one: dict[str, Any]) -> Any:

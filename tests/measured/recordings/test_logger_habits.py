@@ -15,7 +15,18 @@ from measured.headers.words import roles_of
 from measured.importing.aligned import Recording, shift
 from measured.importing.case_files import read_runs
 from measured.importing.clock import clock_of
-from measured.importing.guess import AS_FLOW, AS_ROOM, OF_WHAT, ON_OFF, guesses, in_memory
+from measured.importing.guess import (
+    AS_FLOW,
+    AS_ROOM,
+    ELSE,
+    OF_READINGS,
+    OF_SUPPLY,
+    OF_WHAT,
+    ON_OFF,
+    VARIANT,
+    guesses,
+    in_memory,
+)
 from measured.importing.source import read_source
 from thermoscope.commands.test.new import Wishes, first_model, new_case as new
 
@@ -86,6 +97,11 @@ def test_what_is_made_of_a_reading_and_a_current_before_the_inverter_give_way(tm
     header = "t [s],T_stator,T_stator_filtered,room [°C],I_batt [A],I_phase [A],eta [%]"
     found, _ = read(file(tmp_path, header, "t", "W", "W", "A", WARM["I"] / 3, "I", WARM["I"]))
     assert goes(found) == {"T_stator": "stator", "room [°C]": "ambient", "I_phase [A]": "current_A"}
+    header = "t [s],T_pm,T_pm_hat,T_pm_kf,room [°C],OTI_A,I [A]"
+    found, _ = read(file(tmp_path, header, "t", *"WH", WARM["W"] + np.sin(T), "A", 1 - ON, "I"))
+    assert goes(found).keys() == {"T_pm", "T_pm_kf", "room [°C]", "I [A]"}
+    assert found["T_pm_kf"][0].doubt.startswith(VARIANT)
+    assert found["OTI_A"][0].doubt == "a state, by its values"
     found, _ = read(file(tmp_path, "t [s],winding [°C],room [°C],I_rms_mean,I_rms_rms", "t", "W", "A", "I", "I"))
     assert "I_rms_rms" in goes(found)
 
@@ -103,6 +119,21 @@ def test_other_devices_are_no_parts_and_the_motor_is_its_winding(tmp_path):
     network = tomllib.loads(first_model(runs, {}).first.text())
     assert network["nodes"]["motor"]["role"] == "winding"
     assert "the winding?" in found["Temp_Motor [°C]"][0].doubt
+
+
+def test_rows_of_statistics_under_names_and_readings_without_a_unit_of_their_own(tmp_path):
+    """As data frames write them, and as sets for machine learning scale them."""
+    header = "t [s],T_wdg [°C],T_wdg [°C],room [°C],I [A],I [A],Batt [V]\n,mean,max,mean,mean,max,min"
+    found, _ = read(file(tmp_path, header, "t", "W", WARM["W"] + 1, "A", "I", WARM["I"] + 1, 13 + np.sin(T)))
+    assert found["min Batt [V]"][0].doubt == OF_READINGS
+    assert {c: to for c, to in goes(found).items() if to != "voltage_V"} == {
+        "mean T_wdg [°C]": "mean-wdg",
+        "mean room [°C]": "ambient",
+        "mean I [A]": "current_A",
+    }
+    scaled = [(v - v.mean()) / 20 for v in (WARM["W"], WARM["H"], WARM["A"] + np.sin(T))]
+    found, _ = read(file(tmp_path, "t [s],winding,frame,room,I [A]", "t", *scaled, "I"))
+    assert all(ELSE in found[name][0].doubt for name in ("winding", "frame", "room"))
 
 
 def test_what_hardly_warms_is_the_room_where_no_other_column_is(tmp_path, capsys):
@@ -169,14 +200,20 @@ def test_series_of_instants_and_readings(tmp_path):
     """As data bases of measurements answer: a name and pairs, the instant first or last."""
     for pair in (lambda t, v: [1778138070 + t, f"{v:.3f}"], lambda t, v: [v, 1000 * (1778138070 + t)]):
         series = [
-            {"metric": {"__name__": name}, "values": [pair(int(t), v) for t, v in zip(T, WARM[key])]}
-            for name, key in (("motor_winding_celsius", "W"), ("room_celsius", "A"), ("motor_current_amperes", "I"))
+            {"metric": {"__name__": name, "at": at}, "values": [pair(int(t), v) for t, v in zip(T, WARM[key])]}
+            for name, at, key in (
+                ("motor_celsius", "winding", "W"),
+                ("motor_celsius", "frame", "H"),
+                ("room_celsius", "hall", "A"),
+                ("motor_current_amperes", "drive", "I"),
+            )
         ]
         (tmp_path / "a.json").write_text(json.dumps({"status": "success", "data": {"result": series}}))
         found, ((source, clock),) = read(tmp_path / "a.json")
         assert clock.seconds == pytest.approx(T)
         assert goes(found)["room_celsius"] == "ambient"
-        assert source.numbers("motor_winding_celsius") == pytest.approx(WARM["W"], abs=1e-3)
+        assert source.numbers("motor_celsius winding") == pytest.approx(WARM["W"], abs=1e-3)
+        assert source.numbers("motor_celsius frame") == pytest.approx(WARM["H"], abs=1e-3)
 
 
 def test_channels_of_two_rates_in_an_mf4(tmp_path):
@@ -212,8 +249,7 @@ def test_air_that_leaves_the_machine_is_no_boundary_beside_a_room(tmp_path):
 
 
 @pytest.mark.parametrize(
-    ("more", "most_Hz", "feeds"),
-    [("", 50.0, "speed_rpm"), (",n [rpm]", 50.0, "switching_Hz"), ("", 8e3, "switching_Hz")],
+    ("more", "most_Hz", "feeds"), [("", 50.0, "speed_rpm"), (",n [rpm]", 50.0, ""), (",n [rpm]", 8e3, "switching_Hz")]
 )
 def test_the_frequency_of_the_supply_is_the_speed_where_none_was_recorded(tmp_path, more, most_Hz, feeds):
     """50 Hz are 3000 rpm of one pole pair; an inverter switches faster than any motor is fed."""
@@ -222,6 +258,7 @@ def test_the_frequency_of_the_supply_is_the_speed_where_none_was_recorded(tmp_pa
     guess, source = found["Freq [Hz]"]
     assert guess.feeds == feeds
     assert in_memory(source, guess).max() == pytest.approx(3000.0 if feeds == "speed_rpm" else most_Hz)
+    assert feeds or guess.doubt == OF_SUPPLY
 
 
 @pytest.mark.parametrize("name", ["T_cabinet", "T_Schaltschrank"])

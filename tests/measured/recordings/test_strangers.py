@@ -312,6 +312,8 @@ LONG = {
     "Channel,Label,Function\n101,Temp_Winding,Temperature\n\nChannel,Label,Reading,Status,time_s": lambda n, k, v: (
         f"{100 + len(n)},{n},{v:.6E},0,{5 * k}"
     ),
+    "SECONDS;PID;MEDIDA": lambda n, k, v: f'"{5 * k}";"{n}";"{v:.2f}";',  # words that nobody knows
+    "": lambda n, k, v: f"2026-03-28T12:{k // 12:02d}:{5 * k % 60:02d}+0200 {n} {v:.2f}",
 }
 
 
@@ -339,6 +341,33 @@ def test_signals_with_times_of_their_own_hold_until_the_next(tmp_path, stamp):
     t, current = clock_of(source).seconds, source.numbers("I_motor")
     assert t[[0, 1, 2, -1]] == pytest.approx([0, 1, 5, 145])
     assert np.array_equal(current[1:], np.select([t[1:] < 51, t[1:] < 121], [0.0, 9.0], 2.0))
+
+
+def test_a_second_file_says_what_numbers_and_short_names_mean(tmp_path):
+    """A table of sensors beside their readings; a list of columns beside them."""
+    rows = [f"{k},{n},{v[k]:.2f}" for k in range(len(S["t"])) for n, v in ((1, S["W"]), (2, S["A"]), (3, S["I"]))]
+    (tmp_path / "a.csv").write_text("\n".join(["time_s,sensor_id,value", *rows]) + "\n")
+    (tmp_path / "b.csv").write_text("sensor_id,at,unit\n1,stator winding,degC\n2,room air,degC\n3,current,A\n")
+    columns = (S["t"], S["W"], S["W"] + 1, S["A"], S["I"])
+    (tmp_path / "c.csv").write_text(table("Date_s;Wt_avg;Wt_max;Ot_avg;Ia_avg", *columns, sep=";"))
+    (tmp_path / "d.csv").write_text("Wt;Winding_temperature;deg_C\nOt;Outdoor_temperature;deg_C\nIa;Current;A\n")
+    for names in ("ab", "cd"):
+        ((source, clock),) = read_runs(*(tmp_path / f"{name}.csv" for name in names))
+        found = guesses(source, clock.columns, first_model([(source, clock)], {}).target)
+        hot, *rest, heats = [g for g in found if g.used]
+        assert (hot.quantity, *(g.place for g in rest), heats.feeds) == ("temperature", "ambient", "current_A")
+        assert f"{names[1]}.csv says what columns are" in source.notes
+
+
+def test_two_recorders_of_one_input_are_one_input(tmp_path, capsys):
+    for name, more in (("a", "I [A],room [°C],T_winding"), ("b", "Current [A],T_frame [°C],T_cover [°C]")):
+        (tmp_path / f"{name}.csv").write_text(table(f"time_s,{more}", *(S[c] for c in "tIAW")))
+    out, document = tmp_path / "made", tmp_path / "new.json"
+    assert new([tmp_path / "a.csv", tmp_path / "b.csv"], Wishes(out=out, yes=True), str(document)) == 0
+    (test,) = json.loads(document.read_text())["tests"]
+    assert {c["doubt"] for c in test["columns"] if "already" in c["doubt"]} >= {
+        "'I [A]' of a.csv gives current_A already"
+    }
 
 
 def test_signals_whose_times_have_no_order_are_refused(tmp_path):
@@ -665,7 +694,7 @@ def test_rows_of_a_clock_that_was_set_back_are_not_shuffled_into_each_other(tmp_
     stamps = [6 * k - 400 * (k > 60) for k in range(120)]
     (tmp_path / "a.csv").write_text("t [s],T_coil [C]\n" + "".join(f"{t},{20 + k}\n" for k, t in enumerate(stamps)))
     with pytest.raises(InputError, match="runs back by 394 s in row 62"):
-        read_runs(tmp_path / "a.csv", None)
+        read_runs(tmp_path / "a.csv")
 
 
 @pytest.mark.parametrize(
@@ -694,7 +723,7 @@ def test_lines_without_the_names_of_most_are_no_rows(tmp_path):
     lines = [f"{at} -> Tmotor={w:.2f}C I={i:.2f}A" for at, w, i in rows]
     head = ["=~=~ log 2026.03.28 =~=~", "11:59:58.000 -> heat run", "11:59:59.000 -> found 3 sensors"]
     (tmp_path / "a.log").write_text("\n".join([*head, *lines[:50], "12:04:10.000 -> retry", *lines[50:]]))
-    [(source, clock)] = read_runs(tmp_path / "a.log", None)
+    [(source, clock)] = read_runs(tmp_path / "a.log")
     assert clock.seconds == pytest.approx(S["t"])
     assert source.numbers("Tmotor") == pytest.approx(S["W"], abs=0.006)
     assert source.units["I"] == "A"
@@ -705,7 +734,7 @@ def test_a_blank_between_number_and_unit_in_a_line_of_names(tmp_path, between):
     stamps = [datetime.fromtimestamp(1762157670 + t, UTC).strftime("%Y-%m-%d %H:%M:%S,250") for t in S["t"]]
     lines = [f"{at}{between}winding={w:.2f} degC I={i:.2f} A" for at, w, i in zip(stamps, S["W"], S["I"])]
     (tmp_path / "a.log").write_text("\n".join([*lines[:5], f"{stamps[5]} - bench - DEBUG - output on", *lines[5:]]))
-    [(source, clock)] = read_runs(tmp_path / "a.log", None)
+    [(source, clock)] = read_runs(tmp_path / "a.log")
     assert clock.seconds == pytest.approx(S["t"])
     assert source.numbers("winding") == pytest.approx(S["W"], abs=0.006)
     assert (source.units["winding"], source.units["I"]) == ("degC", "A")

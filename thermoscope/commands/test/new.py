@@ -115,10 +115,7 @@ def new_case(files: Sequence[Path], wishes: Wishes, target: str | None) -> int:
         raise InputError(f"{start:g} is not before {end:g}", "--from, --to", "--from below --to")
     check_new_folder(folder)  # before minutes of reading
     with progress() as tell:
-        read = []
-        for file in dict.fromkeys(files):
-            tell(f"reading {file.name}")
-            read += read_runs(file, wishes.period_s)
+        read = read_runs(*files, period_s=wishes.period_s, tell=tell)
         model = _model(wishes, read, tell)
     drafts = _drafts(read, model, wishes)
     read.clear()
@@ -251,9 +248,21 @@ def drafts_of(
         part, note = common((first, *rest), whole)
         name = test_name(first.source.file, [d.name for d in out])
         clocks = [f"{r.name}: {r.clock.doubt}" for r in (first, *rest) if r.clock.doubt]
-        draft = Draft(name, (first, *rest), window_s=part, notes=(*cut, *note, *clocks))
+        draft = Draft(name, _fed_once((first, *rest), dialogue.target), window_s=part, notes=(*cut, *note, *clocks))
         out.append(dialogue.completed(draft))
     return out
+
+
+def _fed_once(records: Sequence[Recording], target: Target) -> tuple[Recording, ...]:
+    """With inputs and boundaries that several recorders of a test give from the first of them."""
+    owner: dict[str, str] = {}
+    out = []
+    for record in records:
+        keys = [g.feeds or g.place * (g.place in target.boundaries) for g in record.guesses]
+        every = [g.without(f"{owner[k]} gives {k} already") if k in owner else g for g, k in zip(record.guesses, keys)]
+        owner |= {k: f"'{g.column}' of {record.name}" for g, k in zip(every, keys) if k and g.used}
+        out.append(replace(record, guesses=every))
+    return tuple(out)
 
 
 def save_case(folder: Path, model: Model, drafts: list[Draft], tell: Progress) -> dict[str, Any]:
