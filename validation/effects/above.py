@@ -12,7 +12,7 @@ from geom.errors import InputError
 from lumped.model.network import Link, Network, Source
 from lumped.transfer.laws import Array, Inputs
 from validation.effects.base import ReadingEffect, with_parameter
-from validation.effects.build import Shaped, copy_link, copy_source
+from validation.effects.build import Shaped, copy_element
 
 KIND = "law"
 PLACE = re.compile(r"(.+)\|(.+)>(\d+(?:\.\d+)?(?:e[+-]?\d+)?)")
@@ -80,14 +80,10 @@ class Above(ReadingEffect):
 
     def extend(self, network: Network) -> Network:
         target, name, level = self.parts()
-        items: list[Link | Source] = [*network.links, *network.sources]
-        followed = [x for x in items if x.name == target and not x.origin]
-        if not followed:
-            names = ", ".join(x.name for x in items if not x.origin)
+        items: list[Link | Source] = [x for x in (*network.links, *network.sources) if not x.origin]
+        followed = next((x for x in items if x.name == target), None)
+        if followed is None:
+            names = ", ".join(x.name for x in items)
             raise InputError(f"no loss or link '{target}'", f"effect '{self.name}'", f"one of {names}")
-        law = Shaped(followed[0].law, Ramp(name, level), followed[0].law.temperature, (name,))
-        if isinstance(followed[0], Link):
-            network = copy_link(network, followed[0], self.name, law)
-        else:
-            network = copy_source(network, followed[0], self.name, law)
+        network = copy_element(network, followed, self.name, Shaped.of(followed.law, Ramp(name, level), name))
         return with_parameter(network, self.parameter(self.name))

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -22,6 +22,11 @@ class Shaped(Wrapped):
     temperature: TemperatureLaw = CONSTANT
     also_reads: tuple[str, ...] = ()
     by_instant: bool = False
+
+    @classmethod
+    def of(cls, law: Law, shape: Callable[[Inputs], Array | float], *inputs: str) -> Shaped:
+        """A law times a shape that reads some more inputs, with the law's own dependence on temperature."""
+        return cls(law, shape, law.temperature, inputs)
 
     @property
     def reads(self) -> tuple[str, ...]:  # type: ignore[override]
@@ -111,17 +116,15 @@ def follow(parameters: tuple[Parameter, ...], original: str, copy: str) -> tuple
     return tuple(replace(p, targets=p.targets + m) if m else p for p, m in zip(parameters, more, strict=True))
 
 
-def copy_link(network: Network, link: Link, name: str, law: Law) -> Network:
-    """The network with a second link of the same pattern that follows the original's multipliers."""
-    parameters = follow(network.parameters, link.name, name)
-    return replace(
-        network, links=(*network.links, replace(link, name=name, law=law, origin=name)), parameters=parameters
-    )
+def copy_element(network: Network, element: Link | Source, name: str, law: Law) -> Network:
+    """The network with a second link or source of the same pattern that follows the original's multipliers."""
+    copy = replace(element, name=name, law=law, origin=name)
+    larger = network.extended(links=[copy]) if isinstance(copy, Link) else network.extended(sources=[copy])
+    return replace(larger, parameters=follow(network.parameters, element.name, name))
 
 
-def copy_source(network: Network, source: Source, name: str, law: Law) -> Network:
-    """The network with a second source of the same pattern that follows the original's multipliers."""
-    parameters = follow(network.parameters, source.name, name)
-    return replace(
-        network, sources=(*network.sources, replace(source, name=name, law=law, origin=name)), parameters=parameters
-    )
+def copy_elements(network: Network, copies: Mapping[str, tuple[Link | Source, Law]]) -> Network:
+    """The network with a copy of each of some links and sources.  copies : name of the copy -> original, its own law"""
+    for name, (element, law) in copies.items():
+        network = copy_element(network, element, name, law)
+    return network

@@ -10,7 +10,7 @@ from lumped.model.network import Link, Network
 from lumped.model.sites import boundaries, cell, part_of, standing_links
 from lumped.transfer.laws import Inputs
 from validation.effects.base import Effect, Scene, with_parameter
-from validation.effects.build import HOUR, Shaped, copy_link
+from validation.effects.build import HOUR, Shaped, copy_elements
 
 
 def outer_films(network: Network, washing: Collection[str]) -> list[Link]:
@@ -58,11 +58,9 @@ class Fouling(WeakFilms):
     needs = ("time",)
 
     def extend(self, network: Network) -> Network:
-        names = []
-        for link in films(network, self.place):
-            names.append(f"{self.name}:{link.name}")
-            network = copy_link(network, link, names[-1], Shaped(link.law, hours, link.law.temperature, ("time_s",)))
-        return with_parameter(network, self.parameter(*names))
+        fading = films(network, self.place)
+        copies = {f"{self.name}:{x.name}": (x, Shaped.of(x.law, hours, "time_s")) for x in fading}
+        return with_parameter(copy_elements(network, copies), self.parameter(*copies))
 
 
 class Blockage(WeakFilms):

@@ -8,7 +8,7 @@ from lumped.model.sites import windings
 from lumped.sources.loss_laws import EDDY
 from lumped.transfer.laws import CONSTANT, Linear, Scaled, WithTemperature
 from validation.effects.base import Effect, Scene, with_parameter
-from validation.effects.build import copy_source
+from validation.effects.build import copy_element
 
 REFERENCE = 20.0  # degC, of losses that name no temperature at which they hold
 UNSAID = ("constant", "stray")  # kinds that say nothing of how a loss comes about: in a winding it is copper's
@@ -50,8 +50,8 @@ class CopperFeedback(Effect):
             for part, sign, tail in [(source, 1.0, end), *eddy]:
                 names += [f"{self.name}:rise{tail}", f"{self.name}:base{tail}"]
                 law = WithTemperature(Scaled(part.law, sign), Linear(1.0, reference))
-                network = copy_source(network, part, names[-2], law)
-                network = copy_source(network, part, names[-1], WithTemperature(Scaled(part.law, -sign)))
+                network = copy_element(network, part, names[-2], law)
+                network = copy_element(network, part, names[-1], WithTemperature(Scaled(part.law, -sign)))
         return with_parameter(network, self.parameter(*names))
 
 

@@ -10,7 +10,7 @@ from lumped.model.quantities import AIR, LIQUID
 from lumped.model.sites import cell, model_links
 from lumped.transfer.laws import RUNNING, Inputs
 from validation.effects.base import Effect, Scene, with_parameter
-from validation.effects.build import Shaped, copy_link
+from validation.effects.build import Shaped, copy_elements
 
 PARTS = (25, 50, 75)  # percent of the test after which a fan or pump may have stopped
 
@@ -131,10 +131,7 @@ class FanStop(Effect):
         which, part = self.place.rsplit(":", 1)
         original = next(p for p in flows(network) if which.startswith(f"{p.name}:"))
         test = which.removeprefix(f"{original.name}:")
-        new = []
-        targets = {t for t, _ in original.targets}
-        for link in [x for x in model_links(network) if x.name in targets]:
-            new.append(f"{self.name}:{link.name}")
-            law = Shaped(link.law, Stopped(test, int(part)), link.law.temperature, ("time_s",))
-            network = copy_link(network, link, new[-1], law)
-        return with_parameter(network, self.parameter(*new))
+        stop, targets = Stopped(test, int(part)), {t for t, _ in original.targets}
+        moved = [x for x in model_links(network) if x.name in targets]
+        copies = {f"{self.name}:{x.name}": (x, Shaped.of(x.law, stop, "time_s")) for x in moved}
+        return with_parameter(copy_elements(network, copies), self.parameter(*copies))
