@@ -11,7 +11,7 @@ import numpy as np
 from geom.errors import InputError
 from lumped.model.network import Link, Network, Source
 from lumped.transfer.laws import Array, Inputs
-from validation.effects.base import ReadingEffect, with_parameter
+from validation.effects.base import NOTHING, Interval, ReadingEffect, with_parameter
 from validation.effects.build import Shaped, copy_element
 
 KIND = "law"
@@ -69,9 +69,7 @@ class Above(ReadingEffect):
     def inputs(self) -> tuple[str, ...]:
         return (self.parts()[1],)
 
-    def words(
-        self, a: float, network: Network, values: Mapping[str, float], ci95: tuple[float, float] = (0.0, 0.0)
-    ) -> str:
+    def words(self, a: float, network: Network, values: Mapping[str, float], ci95: Interval = NOTHING) -> str:
         """ "the declared loss stator is 40 % too high above current_A 150"."""
         target, name, level = self.parts()
         side = "too low" if a > 0 else "too high"

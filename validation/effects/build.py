@@ -71,6 +71,11 @@ def exchange(network: Network, name: str, a: str, b: str, law: Law) -> Link:
     return Link(name, "link", (a, b), rows.ravel(), cols.ravel(), vals.ravel(), law, ra, rb, name)
 
 
+def label(element: Link | Source) -> str:
+    """Its name without what it is: of "contact:core|housing" what follows the first colon."""
+    return element.name.split(":", 1)[-1]
+
+
 def links_between(network: Network, a: str, b: str) -> list[Link]:
     """Links between two parts, boundaries or places of theirs."""
     pair = {_part(network, a), _part(network, b)}

@@ -16,7 +16,7 @@ from lumped.model.network import Link, Network, Source
 from lumped.transfer.laws import Array, InputPower, Inputs, Law
 from lumped.transfer.ranges import within_silence
 from measured.sensors.operators import head
-from validation.effects.base import Effect, ReadingEffect, place_words, with_parameter
+from validation.effects.base import NOTHING, Effect, Interval, ReadingEffect, place_words, with_parameter
 from validation.effects.build import Shaped, conductance_scale, exchange, heat, links_between, power_scale
 
 PLACE = re.compile(r"([^|]+)(?:\|([^|]+))?\|([^|]+)")
@@ -24,8 +24,6 @@ NUMBER = r"(\d+(?:\.\d+)?(?:e[+-]?\d+)?)"
 FACTOR = re.compile(rf"([^|*^>]+?)(?:>{NUMBER})?(?:\^{NUMBER})? at {NUMBER}")
 ZERO = np.zeros(1)
 STRAIGHT = 0.05  # an exponent this close to one is a straight line: nobody sees the difference
-Interval = tuple[float, float]
-NOTHING: Interval = (0.0, 0.0)
 Factor = tuple[str, float, float, float]  # input, where it sets in, its largest value, exponent
 
 

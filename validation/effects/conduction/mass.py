@@ -1,13 +1,10 @@
 """More heat capacity than assumed."""
 
-from dataclasses import dataclass
-
 from lumped.model.network import Network
 from lumped.model.sites import solids
 from validation.effects.base import Effect, Scene, with_parameter
 
 
-@dataclass(frozen=True)
 class Mass(Effect):
     """Extra mass that takes part in the heating of a node: C = C0 (1 + a)."""
 

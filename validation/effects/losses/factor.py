@@ -1,13 +1,10 @@
 """A declared loss that is off by a factor."""
 
-from dataclasses import dataclass
-
 from lumped.model.network import Network
 from lumped.sources.loss_laws import declared_name
 from validation.effects.base import Effect, Scene, with_parameter
 
 
-@dataclass(frozen=True)
 class LossFactor(Effect):
     """P = P0 (1 + a) of one declared loss, in proportion at all loads."""
 

@@ -55,7 +55,6 @@ class Shift(Chord):
         return h, u + h, u - h
 
 
-@dataclass(frozen=True)
 class InputFault(Effect):
     """A copy of every link and loss that reads the input, with the chord of its law along this error."""
 

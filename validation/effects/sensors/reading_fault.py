@@ -1,7 +1,6 @@
 """Faults of what one sensor says; the machine is as warm as before."""
 
 from collections.abc import Iterable, Iterator
-from dataclasses import dataclass
 from typing import ClassVar
 
 from lumped.model.network import Network
@@ -9,7 +8,6 @@ from lumped.model.sites import ambient
 from validation.effects.base import Effect, Scene, with_parameter
 
 
-@dataclass(frozen=True)
 class ReadingFault(Effect):
     """changes : which part of a reading, as targets of parameters name it ("bias", "gain", "lag", ...)"""
 

@@ -1,7 +1,5 @@
 """Coolant that reaches further than assumed."""
 
-from dataclasses import dataclass
-
 from geom.description.roles import Role
 from lumped.model.network import Network
 from lumped.model.sites import boundaries, fluids, neighbours, solids, washed
@@ -24,7 +22,6 @@ def reached(network: Network, place: str) -> list[str]:
     return [fluid for fluid in coolants(network) if place in washed(network, fluid)] or beside or coolants(network)
 
 
-@dataclass(frozen=True)
 class CoolantLink(Effect):
     """Extra heat transfer a to the coolant (W/m2/K on wetted faces, W/K at a bare node)."""
 
