@@ -8,9 +8,8 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
-from geom.arrays import Array
+from geom.arrays import Array, Mask
 from geom.errors import NoSolution
 from lumped.model.multipliers import parameter_values
 from lumped.model.network import Network
@@ -76,7 +75,7 @@ class Fit:
         return np.asarray(np.sqrt(np.diag(self.covariance)))
 
     @property
-    def at_bound(self) -> NDArray[np.bool_]:
+    def at_bound(self) -> Mask:
         low, high = self.unknowns.bounds
         return (self.theta <= low + 1e-9) | (self.theta >= high - 1e-9)
 

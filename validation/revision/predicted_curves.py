@@ -8,7 +8,7 @@ from itertools import combinations
 
 import numpy as np
 
-from geom.arrays import Array
+from geom.arrays import Array, Numbers
 from geom.errors import InputError, ThermoscopeError
 from lumped.model.network import Network
 from measured.case import Case, Model, Test
@@ -96,9 +96,7 @@ def _network(case: Case, model: Model) -> tuple[Network, dict[str, float]]:
     return network, {k: v for k, v in model.values.items() if k in names}
 
 
-def _curves(
-    hypothetical: Mapping[str, tuple[Network, Mapping[str, float]]], test: Test
-) -> dict[str, dict[str, Array]] | None:
+def _curves(hypothetical: Mapping[str, tuple[Network, Numbers]], test: Test) -> dict[str, dict[str, Array]] | None:
     """None where a model runs away: it lacks what would cool it."""
     curves = {}
     try:

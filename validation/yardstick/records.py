@@ -6,9 +6,8 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
-from geom.arrays import Array
+from geom.arrays import Array, Mask
 from measured.case import Test, seconds_read
 
 MOST_ROWS = 40_000  # of all tests together: twice as many teach little more and double the wait
@@ -29,7 +28,7 @@ class Columns:
     """
 
     sensors: tuple[str, ...]
-    steady: NDArray[np.bool_]
+    steady: Mask
     boundaries: tuple[str, ...]
     inputs: tuple[str, ...]
     scale: Array
@@ -46,7 +45,7 @@ class Record:
     name: str
     time: Array
     T: Array
-    read: NDArray[np.bool_]
+    read: Mask
     boundary: Array
     u: Array
 
@@ -63,6 +62,9 @@ class Record:
         """The rows from begin to end as a record of their own."""
         rows = slice(begin, end)
         return Record(self.name, self.time[rows], self.T[rows], self.read[rows], self.boundary[rows], self.u[rows])
+
+
+Folds = Sequence[Sequence[Record]]  # what is left out at a time
 
 
 def table_columns(fitted: Sequence[Test], every: Sequence[Test]) -> Columns:

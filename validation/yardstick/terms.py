@@ -10,7 +10,7 @@ import numpy as np
 from geom.arrays import Array
 from measured.case import Case
 from validation.yardstick import free_network
-from validation.yardstick.records import Columns, Record
+from validation.yardstick.records import Columns, Folds, Record
 
 SHARE = 0.05  # of all that warms and cools a sensor: what carries less is not worth a name
 
@@ -42,7 +42,7 @@ class Term:
 
 
 def needed_terms(
-    fit: Callable[[Sequence[int]], object], folds: Sequence[Sequence[Record]], columns: Columns, case: Case
+    fit: Callable[[Sequence[int]], object], folds: Folds, columns: Columns, case: Case
 ) -> tuple[Term, ...]:
     """The terms of a free network that no choice of tests does without, those that carry most first."""
     every = range(len(folds))
