@@ -188,17 +188,8 @@ def compiled(
     sizes = every.input_sizes(live)
     course, others = [curves[k] for k in alive], np.zeros(len(sizes), bool)
     course += [signals.curve(x.name, x.law) for x in sizes]
-    drive = forcing(
-        time,
-        u,
-        signals,
-        [*patterns, *sizes],
-        course,
-        np.append(moving, ~others),
-        np.append(stiff, others),
-        bends,
-        precision.every_sample,
-    )
+    move, stiffen = np.append(moving, ~others), np.append(stiff, others)
+    drive = forcing(time, u, signals, [*patterns, *sizes], course, move, stiffen, bends, precision.every_sample)
     return Compiled(
         network.C * capacity_multipliers(network, acting),
         every.matrix(m * constant),

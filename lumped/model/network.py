@@ -117,15 +117,5 @@ class Network(Structure, TableResult):
             rows += [np.full(k, col), np.array([col])]
             cols += [p.states, np.array([col])]
             vals += [-p.b, np.array([weight])]
-        cold = Row(np.array([col]), np.array([1.0]))
-        return Link(
-            name,
-            kind,
-            (place, other),
-            np.concatenate(rows),
-            np.concatenate(cols),
-            np.concatenate(vals),
-            law,
-            p.mean,
-            cold,
-        )
+        triplets = (np.concatenate(x) for x in (rows, cols, vals))
+        return Link(name, kind, (place, other), *triplets, law, p.mean, Row(np.array([col]), np.array([1.0])))

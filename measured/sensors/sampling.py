@@ -86,11 +86,8 @@ class Modes:
         rate = np.maximum(rate.real, SLOWEST)
         shape, weight = lift @ V, np.linalg.solve(V, fall / C[warm, None]) / rate[:, None]
         at_once = np.eye(n)[:, bare]
-        return cls(
-            np.append(rate, np.full(bare.size, np.inf)),
-            np.hstack([shape, at_once]),
-            np.vstack([weight, inverse @ np.eye(n)[bare]]),
-        )
+        rate, inverse = np.append(rate, np.full(bare.size, np.inf)), inverse @ np.eye(n)[bare]
+        return cls(rate, np.hstack([shape, at_once]), np.vstack([weight, inverse]))
 
 
 def interpolation_error(x: Array) -> Array:

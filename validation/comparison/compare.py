@@ -80,19 +80,17 @@ class TestError:
         return _fitted(self.channels)
 
     @property
+    def summary(self) -> dict:
+        """Its error over all channels, for a document."""
+        return {"name": self.name, "role": self.role, "rmse_K": self.rmse_K, "fitted_rmse_K": self.fitted_rmse_K}
+
+    @property
     def over(self) -> int:
         """How many sensors are off by more than is uncertain."""
         return sum(c.verdict == "over" for c in self.channels)
 
     def document(self) -> dict:
-        rows = [c.document() for c in self.channels]
-        return {
-            "name": self.name,
-            "role": self.role,
-            "rmse_K": self.rmse_K,
-            "fitted_rmse_K": self.fitted_rmse_K,
-            "channels": rows,
-        }
+        return {**self.summary, "channels": [c.document() for c in self.channels]}
 
 
 @dataclass(frozen=True)
@@ -164,6 +162,7 @@ class Comparison(TableResult):
         return all(c.verdict == "within" for t in self.tests for c in t.channels)
 
     def document(self) -> dict:
+        known = {n: "declared" if i.declared else "guessed" for n, i in self.identities.items()}
         return {
             "case": self.case,
             "model": {"revision": self.revision, "effects": list(self.effects)},
@@ -173,14 +172,8 @@ class Comparison(TableResult):
             "floor_K": self.floor_K,
             "words": self.words,
             "roles": [
-                {
-                    "name": name,
-                    "role": i.role,
-                    "turns": i.turns,
-                    "known": "declared" if i.declared else "guessed",
-                    "evidence": i.why,
-                }
-                for name, i in self.identities.items()
+                {"name": n, "role": i.role, "turns": i.turns, "known": known[n], "evidence": i.why}
+                for n, i in self.identities.items()
             ],
         }
 
@@ -304,17 +297,8 @@ def channel_error(channel: Channel, time: np.ndarray, predicted: np.ndarray) -> 
     e = channel.y[read] - predicted[read]
     rmse, rise = float(np.sqrt(np.mean(e**2))), rise_K(channel)
     percent = 100.0 * rmse / rise if rise > 0 else float("inf")
-    return ChannelError(
-        channel.name,
-        channel.place,
-        int(read.sum()),
-        seconds_read(time[read]),
-        rmse,
-        float(e.mean()),
-        float(np.abs(e).max()),
-        channel.sigma_K,
-        percent,
-    )
+    what = channel.name, channel.place, int(read.sum()), seconds_read(time[read])
+    return ChannelError(*what, rmse, float(e.mean()), float(np.abs(e).max()), channel.sigma_K, percent)
 
 
 def rise_K(channel: Channel) -> float:

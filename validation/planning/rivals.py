@@ -147,18 +147,8 @@ def _difference(evidence: Evidence, models: CompetingModels, new: Sequence[Test]
     near += segments(network, read, here, free)
     theta, tests = np.concatenate([rival.theta, np.zeros(len(extra))]), (*evidence.tests, *read)
     error = widened_error(evidence, read)
-    fit = minimise(
-        network,
-        tests,
-        Unknowns(free),
-        theta,
-        models.noise,
-        fixed,
-        STEPS,
-        CachedSegments(near),
-        worth=ENOUGH,
-        error=error,
-    )
+    cache = CachedSegments(near)
+    fit = minimise(network, tests, Unknowns(free), theta, models.noise, fixed, STEPS, cache, worth=ENOUGH, error=error)
     return deviance_difference(fit, models.fit(right))
 
 

@@ -62,10 +62,7 @@ class Step:
         return pooled(rows) if error is None else error
 
     def document(self) -> dict:
-        tests = [
-            {"name": t.name, "role": t.role, "rmse_K": t.rmse_K, "fitted_rmse_K": t.fitted_rmse_K}
-            for t in self.comparison.tests
-        ]
+        tests = [t.summary for t in self.comparison.tests]
         return {
             "step": self.step,
             "effect": self.effect,

@@ -357,11 +357,8 @@ def _fit_checks(case: Case, fit: Fit, new: Model, changes: Sequence[Change]) -> 
     pairs = {"left out": np.sqrt(square / seconds)} if seconds else {}
     pairs |= {k: np.array([mean_square(some, "before"), mean_square(some, "after")]) for k, some in groups.items()}
     sigma = float(np.sqrt(np.mean([c.sigma_K**2 for t in fitted for c in t.channels])))
-    which = {
-        "left out": "each of its tests predicted from the rest",
-        "unseen": ", ".join(c.name for c in unseen),
-        FITTED: "the tests it was fitted to",
-    }
+    which = {"left out": "each of its tests predicted from the rest", FITTED: "the tests it was fitted to"}
+    which["unseen"] = ", ".join(c.name for c in unseen)
     checks = [
         Check(kind, bool(b <= max(GETS_WORSE * a, sigma)), float(b), float(a), f"{which[kind]}: {fall(a, b)}")
         for kind, (a, b) in pairs.items()

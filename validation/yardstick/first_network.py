@@ -21,6 +21,7 @@ from numpy.typing import NDArray
 from geom.arrays import Array, Mask
 from geom.one_thread import one_blas_thread
 from lumped.model.quantities import FLOWS
+from lumped.model.topology import reached
 from measured.case import Case
 from measured.importing.starter import FirstNetwork, FirstTerm
 from validation.yardstick import free_network
@@ -69,16 +70,10 @@ def learn_network(case: Case, first: FirstNetwork) -> FirstNetwork:
         return first  # nothing heats it: there is no size to give to anything
     (theta, C), *parts = [(s * theta, s * C) for theta, C in fits for s in [first.watts / table.mean_heat(theta, heat)]]
     scale = dict(zip(columns.inputs, map(float, columns.scale), strict=True))
-    terms = [
-        FirstTerm(
-            ends,
-            float(theta[k]),
-            tuple((f.input, scale[f.input], f.exponent) for f in of),
-            _spread([part[k] for part, _ in parts]),
-        )
-        for k, (ends, of) in enumerate(table.candidates)
-        if theta[k] > 0.0
-    ]
+    follows = [tuple((f.input, scale[f.input], f.exponent) for f in of) for _, of in table.candidates]
+    spreads = [_spread(values) for values in zip(*(part for part, _ in parts), strict=True)]
+    candidates = zip(table.candidates, theta, follows, spreads, strict=True)
+    terms = [FirstTerm(ends, float(size), of, spread) for (ends, _), size, of, spread in candidates if size > 0.0]
     capacities = {node: (float(C[n]), _spread([part[n] for _, part in parts])) for n, node in enumerate(table.nodes)}
     length = max(r.time[-1] - r.time[0] for fold in folds for r in fold)
     alone = [node for node in table.nodes if not _reaches(node, terms, first.boundaries)]
@@ -188,18 +183,9 @@ def _spread(values: Sequence[float]) -> float:
 
 def _reaches(node: str, terms: Sequence[FirstTerm], boundaries: Sequence[str]) -> bool:
     """Does heat find a way from a node to a boundary?"""
-    visited, todo = {node}, [node]
-    while todo:
-        here = todo.pop()
-        for term in terms:
-            if len(term.ends) == 2 and here in term.ends:
-                other = term.ends[term.ends[0] == here]
-                if other in boundaries:
-                    return True
-                if other not in visited:
-                    visited.add(other)
-                    todo.append(other)
-    return False
+    links = [set(term.ends) for term in terms if len(term.ends) == 2]
+    there = reached([node], lambda here: () if here in boundaries else set().union(*(x for x in links if here in x)))
+    return not set(boundaries).isdisjoint(there)
 
 
 @dataclass(frozen=True)
@@ -239,10 +225,8 @@ class _TermTable:
         stirs = [may_stir([measures(f.input) for f in of]) for of in links]
         quantities = {measures(name) for name in columns.inputs}
         heats = [may_heat([measures(f.input) for f in of], quantities) for of in losses]
-        bodies = [
-            *(s for s, steady in zip(columns.sensors, columns.steady, strict=True) if steady),
-            *columns.boundaries,
-        ]
+        bodies = [s for s, steady in zip(columns.sensors, columns.steady, strict=True) if steady]
+        bodies += columns.boundaries
         number: dict[tuple[tuple[str, ...], free_network.Powers], int] = {}
         rows = []
         for sensor in nodes:

@@ -60,19 +60,8 @@ def needed_terms(
             size = capacity or 1.0
             unit = {"link": "1/s", "loss": "K/s"}[kind] if capacity is None else {"link": "W/K", "loss": "W"}[kind]
             low, high = others[:, n, k].min() * size, others[:, n, k].max() * size
-            out.append(
-                Term(
-                    places[sensor],
-                    kind,
-                    places.get(other, other),
-                    of,
-                    float(values[n, k] * size),
-                    float(low),
-                    float(high),
-                    unit,
-                    float(share[n, k]),
-                )
-            )
+            what = (places[sensor], kind, places.get(other, other), of)
+            out.append(Term(*what, float(values[n, k] * size), float(low), float(high), unit, float(share[n, k])))
     return tuple(sorted(out, key=lambda term: -term.share))
 
 
