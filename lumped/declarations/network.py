@@ -277,8 +277,7 @@ def _difference(measured: Source, other: Source) -> Source:
 
 def _checked(network: Network, where: str) -> Network:
     """Names that parameters act on exist, and the network can be a machine."""
-    items: list[Link | Source] = [*network.links, *network.sources]
-    names = {i.name for i in items} | {f"capacity:{s}" for s in network.states}
+    names = {i.name for i in network.elements} | {f"capacity:{s}" for s in network.states}
     for p in network.parameters:
         for target, _ in p.targets:
             if target not in names and not target.startswith(("bias:", "gain:", "lag:")):

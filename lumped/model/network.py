@@ -70,10 +70,14 @@ class Network(Structure, TableResult):
         return self.signals.get(quantity, INPUTS[quantity])
 
     @property
+    def elements(self) -> list[Link | Source]:
+        """Links, then sources."""
+        return [*self.links, *self.sources]
+
+    @property
     def inputs(self) -> set[str]:
         """Names of the signals that the laws read (e.g. "current_A"), with their units in the name."""
-        items: list[Link | Source] = [*self.links, *self.sources]
-        return {name for item in items for name in item.law.reads}
+        return {name for item in self.elements for name in item.law.reads}
 
     @property
     def heated(self) -> tuple[str, ...]:
@@ -117,5 +121,6 @@ class Network(Structure, TableResult):
             rows += [np.full(k, col), np.array([col])]
             cols += [p.states, np.array([col])]
             vals += [-p.b, np.array([weight])]
-        triplets = (np.concatenate(x) for x in (rows, cols, vals))
-        return Link(name, kind, (place, other), *triplets, law, p.mean, Row(np.array([col]), np.array([1.0])))
+        row, column, value = (np.concatenate(x) for x in (rows, cols, vals))
+        cold = Row(np.array([col]), np.array([1.0]))
+        return Link(name, kind, (place, other), row, column, value, law, p.mean, cold)

@@ -133,8 +133,8 @@ class Course:
     def _simulated(self, some: slice) -> tuple[Array, Array, Stand]:
         part, rows = stretch_of_record(self.test, self.shift, some), [c.row for c in self.test.channels]
         # a step at every sample: then a test cut in two, or looked at in stretches, is the same to the bit
-        how = {"begin": self.end, "shifts": self.shifts, "precision": self.precision}
-        run = simulate(self.network, part, self.heat, rows, self.tangents, **how)
+        of = self.network, part, self.heat, rows, self.tangents
+        run = simulate(*of, begin=self.end, shifts=self.shifts, precision=self.precision)
         return run.y, np.empty((*run.y.shape, 0)) if run.dy is None else run.dy, run.end
 
 

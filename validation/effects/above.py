@@ -9,7 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from geom.errors import InputError
-from lumped.model.network import Link, Network, Source
+from lumped.model.network import Network
 from lumped.transfer.laws import Array, Inputs
 from validation.effects.base import NOTHING, Interval, ReadingEffect, with_parameter
 from validation.effects.build import Shaped, copy_element
@@ -78,7 +78,7 @@ class Above(ReadingEffect):
 
     def extend(self, network: Network) -> Network:
         target, name, level = self.parts()
-        items: list[Link | Source] = [x for x in (*network.links, *network.sources) if not x.origin]
+        items = [x for x in network.elements if not x.origin]
         followed = next((x for x in items if x.name == target), None)
         if followed is None:
             names = ", ".join(x.name for x in items)

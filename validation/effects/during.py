@@ -102,7 +102,8 @@ class During(Effect):
     def _conditional(self, network: Network, larger: Network, parameter: Parameter) -> Network:
         """What the other effect adds, times the condition."""
         links, sources = larger.links[len(network.links) :], larger.sources[len(network.sources) :]
-        new = {x.name: f"{x.name}{IN}{self.condition}" for x in (*links, *sources)}
+        names = [*(x.name for x in links), *(x.name for x in sources)]
+        new = {name: f"{name}{IN}{self.condition}" for name in names}
         parameters = tuple(
             replace(p, targets=tuple((new.get(t, t), e) for t, e in p.targets))
             for p in (*larger.parameters[:-1], replace(parameter, name=self.name))
@@ -118,7 +119,7 @@ class During(Effect):
         Copies that others of its kind have brought in are not copied again: with n of them there would be 2^n, for the
         product of two changes of one flow in one test.
         """
-        items: dict[str, Link | Source] = {x.name: x for x in (*network.sources, *network.links)}
+        items = {x.name: x for x in reversed(network.elements)}
         copies: dict[str, tuple[Link | Source, Law]] = {}
         for target, exponent in parameter.targets:
             if target not in items:

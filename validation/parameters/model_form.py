@@ -162,7 +162,8 @@ def _with_input(
 ) -> Network:
     """The exponent of one input in all laws of a parameter that follow it."""
     copies: dict[str, tuple[Link | Source, Law]] = {}
-    for x in (*films, *losses):
+    items: list[Link | Source] = [*films, *losses]
+    for x in items:
         if name in x.law.reads and set(x.law.reads) <= set(level):
             law = ExponentError(x.law, name, {k: level[k] for k in x.law.reads})
             copies |= {f"{x.name}^{name}": (x, law)} if law.at_work else {}
