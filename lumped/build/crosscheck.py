@@ -91,19 +91,17 @@ class Coefficients:
     inflow: Array
 
 
-def steady_state(network: Network, inputs: Numbers, ambient: float, values: Numbers | None = None) -> Array:
+def steady_state(network: Network, inputs: Numbers, ambient: float) -> Array:
     """(n + n_boundary,) temperatures the network settles at (degC)."""
-    return steady_rest(network, inputs, dict.fromkeys(network.boundaries, ambient), values).z
+    return steady_rest(network, inputs, dict.fromkeys(network.boundaries, ambient)).z
 
 
-def coefficients(
-    network: Network, inputs: Numbers, z: Array, values: Numbers | None = None, shares: Shares | None = None
-) -> Coefficients:
+def coefficients(network: Network, inputs: Numbers, z: Array, shares: Shares | None = None) -> Coefficients:
     """Film h and contact g (W/m2/K), losses (W) by place, and the streams' matrix among the fluid nodes.
 
     shares : source -> share of its watts per part, zone or fluid; None: by the mean nodes it heats
     """
-    m = multipliers(network, values)
+    m = multipliers(network)
     signals = {name: np.array([float(value)]) for name, value in inputs.items()}
     films: dict[str, float] = {}
     contacts: dict[str, float] = {}

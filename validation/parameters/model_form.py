@@ -190,18 +190,8 @@ def _with_copies(
     """With copies of links or losses that one parameter of the form moves."""
     if not copies:
         return network
-    new = Parameter(
-        name,
-        tuple((copy, 1.0) for copy in copies),
-        value=0.0,
-        unit=unit,
-        low=-2.5 * sd,
-        high=2.5 * sd,
-        prior_sd=sd,
-        mapping="amplitude",
-        neutral=0.0,
-        source="scatter of published exponents",
-    )
+    acts, why = tuple((copy, 1.0) for copy in copies), "scatter of published exponents"
+    new = Parameter(name, acts, 0.0, unit, -2.5 * sd, 2.5 * sd, sd, "amplitude", 0.0, source=why)
     return with_parameter(copy_elements(network, copies), new)
 
 
@@ -213,11 +203,5 @@ def shares(parent: str, films: Sequence[Link], doubt: Doubt = USUAL) -> Iterator
     if len(by_body) < 2:
         return
     for body, names in by_body.items():
-        yield Parameter(
-            f"{parent}:{body}",
-            tuple((n, 1.0) for n in names),
-            low=0.5,
-            high=2.0,
-            prior_sd=doubt["share"],
-            source="scatter of published film sets",
-        )
+        acts, why = tuple((n, 1.0) for n in names), "scatter of published film sets"
+        yield Parameter(f"{parent}:{body}", acts, low=0.5, high=2.0, prior_sd=doubt["share"], source=why)

@@ -11,7 +11,7 @@ import numpy as np
 
 from geom.text import counted
 from measured.case import Case
-from validation.calibration.calibrate import no_progress
+from validation.calibration.calibrate import Progress, no_progress
 from validation.comparison.compare import Comparison, errors, pooled
 from validation.diagnosis import diagnose
 from validation.effects import effect
@@ -25,7 +25,6 @@ from validation.yardstick.suggestions import suggested_effects
 from validation.yardstick.words import NAMES, WORTH
 from validation.yardstick.yardstick import yardstick
 
-Progress = Callable[[str], None]
 Trial = tuple[tuple[str, ...], dict[str, float | str]]  # effects, and what speaks for them
 LEAST = 0.005  # K, a rise that two digits show
 LIKELY = 3  # sets tried where no name was added: each costs a fit, and the criterion decides

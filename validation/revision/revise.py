@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, replace
 from math import isfinite, sqrt
 
@@ -20,7 +20,7 @@ from lumped.schemas.reader import suggestion
 from measured.case import AddedEffect, Case, Channel, Model, Test
 from measured.sensors.faults import broken_channels, without
 from measured.sensors.operators import of_measurement
-from validation.calibration.calibrate import Fit, no_progress, with_model_error
+from validation.calibration.calibrate import Fit, Progress, no_progress, with_model_error
 from validation.calibration.intervals import Estimate, Profile, estimates
 from validation.calibration.model_error import ModelError
 from validation.calibration.profile import profiles
@@ -52,7 +52,6 @@ from validation.revision.acceptance import (
 from validation.revision.repeated_events import repeated_events
 from validation.tables import revision_tables
 
-Progress = Callable[[str], None]
 GETS_WORSE = 1.05  # a fit under priors may lose so much on single tests
 LOST = 2.0  # a test that was fitted and is so many times worse has paid for another: no compromise costs that
 TRAINING = ("calibrate", "validate")
