@@ -134,15 +134,8 @@ def _pack_tangents(
     every = (*network.states, *network.boundaries)
     for j, name in enumerate(shifts, len(slope)):
         first[every.index(name) if name else np.flatnonzero(~hidden), j] = 1.0
-    return Tangents(
-        np.array([x[0] for x in triplets], np.int64),
-        np.array([x[1] for x in triplets], np.int64),
-        np.array([x[2] for x in triplets], float),
-        state,
-        column,
-        dC[column, state],
-        first,
-    )
+    tangent, term = (np.array([x[k] for x in triplets], np.int64) for k in (0, 1))
+    return Tangents(tangent, term, np.array([x[2] for x in triplets], float), state, column, dC[column, state], first)
 
 
 @once
@@ -190,18 +183,10 @@ def compiled(
     course += [signals.curve(x.name, x.law) for x in sizes]
     move, stiffen = np.append(moving, ~others), np.append(stiff, others)
     drive = forcing(time, u, signals, [*patterns, *sizes], course, move, stiffen, bends, precision.every_sample)
-    return Compiled(
-        network.C * capacity_multipliers(network, acting),
-        every.matrix(m * constant),
-        names,
-        terms,
-        drive,
-        _pack_tangents(network, slope, names, shifts),
-        pack_rows(rows, network.size),
-        control(network, every, m, factors, precision),
-        partial(every.elimination, m != 0.0),
-        tuple(p.law.temperature for p in patterns),
-    )
+    C, K0 = network.C * capacity_multipliers(network, acting), every.matrix(m * constant)
+    moves, outputs = _pack_tangents(network, slope, names, shifts), pack_rows(rows, network.size)
+    passes, tables = control(network, every, m, factors, precision), tuple(p.law.temperature for p in patterns)
+    return Compiled(C, K0, names, terms, drive, moves, outputs, passes, partial(every.elimination, m != 0.0), tables)
 
 
 def control(
@@ -211,14 +196,9 @@ def control(
     hidden = hidden_states(network)
     acts = [(p, x, f) for p, x, f in zip(every.patterns, m.tolist(), factors, strict=True) if x != 0.0 and not p.heats]
     holds = not hidden.any() and all(p.monotone and x * _extreme(f, x > 0.0) >= 0.0 for p, x, f in acts)
-    return Control(
-        state_units(network),
-        (~hidden).astype(np.int64),
-        np.array([precision.error_K, precision.error_share]),
-        np.array([holds], np.int64),
-        np.array([HOTTEST]),
-        np.zeros(1, np.int64),
-    )
+    units, limits = state_units(network), np.array([precision.error_K, precision.error_share])
+    visible, holding = (~hidden).astype(np.int64), np.array([holds], np.int64)
+    return Control(units, visible, limits, holding, np.array([HOTTEST]), np.zeros(1, np.int64))
 
 
 def _extreme(f: Array, least: bool) -> float:

@@ -16,6 +16,7 @@ from lumped.model.network import Network
 from measured.case import Case, Channel, Test, seconds_read
 from measured.doubt import USUAL, Doubt
 from measured.sensors.operators import start_target
+from validation.comparison.linearisation import largest_rise
 from validation.comparison.predict import predict
 from validation.comparison.uncertainty import Uncertainty, uncertainties
 from validation.parameters.unknowns import hidden_starts, measured, standing, start_name
@@ -295,16 +296,10 @@ def channel_error(channel: Channel, time: np.ndarray, predicted: np.ndarray) -> 
     """The error of one sensor.  time : (n_time,) s;  predicted : (n_time,) degC"""
     read = np.isfinite(channel.y)
     e = channel.y[read] - predicted[read]
-    rmse, rise = float(np.sqrt(np.mean(e**2))), rise_K(channel)
+    rmse, rise = float(np.sqrt(np.mean(e**2))), largest_rise(channel)
     percent = 100.0 * rmse / rise if rise > 0 else float("inf")
     what = channel.name, channel.place, int(read.sum()), seconds_read(time[read])
     return ChannelError(*what, rmse, float(e.mean()), float(np.abs(e).max()), channel.sigma_K, percent)
-
-
-def rise_K(channel: Channel) -> float:
-    """How far a sensor went from its first reading (K); 0 where it was never read."""
-    finite = channel.y[np.isfinite(channel.y)]
-    return float(np.max(np.abs(finite - finite[0]))) if finite.size else 0.0
 
 
 test_error.__test__ = False  # type: ignore[attr-defined]

@@ -103,9 +103,8 @@ def checked(occurrence: Event, test: str, first: float, last: float, where: str)
             what = f"an event ends at {end:g} s, not after it begins at {begin:g} s"
             raise InputError(what, where, "begin, then end")
         if begin < first or end > last:
-            raise InputError(
-                f"an event from {begin:g} to {end:g} s is outside the record", where, f"{first:g} to {last:g} s"
-            )
+            what = f"an event from {begin:g} to {end:g} s is outside the record"
+            raise InputError(what, where, f"{first:g} to {last:g} s")
     for (a, b), (c, d) in pairwise(occurrence.spans[test]):
         if c < b:
             what = f"an event overlaps itself: {a:g} to {b:g} s and {c:g} to {d:g} s"

@@ -263,9 +263,8 @@ def visible_check(fit: Fit, name: str) -> Check:
     """Whether the readings show an amplitude that no prediction is judged by."""
     k = fit.unknowns.names.index(name)
     far = abs(float(fit.theta[k])) / float(np.sqrt(fit.covariance[k, k]))
-    return Check(
-        "shown", far > VISIBLE, far, VISIBLE, f"{name} is {far:.1f} deviations from none, {VISIBLE:g} would do"
-    )
+    words = f"{name} is {far:.1f} deviations from none, {VISIBLE:g} would do"
+    return Check("shown", far > VISIBLE, far, VISIBLE, words)
 
 
 def fall(before: float, after: float) -> str:

@@ -226,9 +226,8 @@ def _added(
             break
         name = supervisor.choose(diagnosis, choice)
         if name is None:
-            declined = (
-                declined or f"{' or '.join(c.words for c in choice)} {'were' if len(choice) > 1 else 'was'} not added"
-            )
+            were = "were" if len(choice) > 1 else "was"
+            declined = declined or f"{' or '.join(c.words for c in choice)} {were} not added"
             if not supervisor.suggest:
                 break
             continue

@@ -172,9 +172,8 @@ def add(
     for one in new:
         inside(one, case)
         if one.name in {e.name for e in case.model.effects}:
-            raise InputError(
-                f"'{one.name}' is in the model already", f"case '{case.name}'", "another effect, or `remove` it first"
-            )
+            right = "another effect, or `remove` it first"
+            raise InputError(f"'{one.name}' is in the model already", f"case '{case.name}'", right)
     if not case.model.values:
         progress("calibrating without the effect")
         bare = calibrate(case, TRAINING, progress).model
@@ -220,9 +219,8 @@ def _revised(
     before = before or errors(case)
     tests = [t for t in case.tests if t.role in roles]
     if not tests:
-        raise InputError(
-            f"no test has the role {' or '.join(roles)}", f"case '{case.name}'", "give at least one that role"
-        )
+        what = f"no test has the role {' or '.join(roles)}"
+        raise InputError(what, f"case '{case.name}'", "give at least one that role")
     training = replace(case.training(), model=model)
     sample = tests if action == "calibrate" else training.tests
     reference = replace(case_reference(training), tests=tuple(t.name for t in sample))
@@ -406,9 +404,8 @@ def _profiled(
     fit: Fit, tests: Sequence[Test], model: Model, globs: Sequence[str], progress: Progress
 ) -> dict[str, Profile]:
     """Profile intervals of a stage's own parameters that match a glob."""
-    names = [
-        p.name for p in fit.unknowns.parameters if not of_measurement(p) and any(belongs(p.name, g) for g in globs)
-    ]
+    every = [p.name for p in fit.unknowns.parameters if not of_measurement(p)]
+    names = [name for name in every if any(belongs(name, g) for g in globs)]
     return profiles(fit, *_conditions(fit, tests, model), names, progress)
 
 
@@ -464,9 +461,8 @@ def other_changes(changes: Sequence[Change], fitted: Collection[str]) -> list[st
     was, now = (mean_square(outside, side, [c.seconds for c in outside]) for side in ("before", "after"))
     change = f"{called} {fall(was, now)}"
     worst = max(outside, key=lambda c: c.after - c.before)
-    return [
-        f"{change}: {worst.name} got worse, the fit follows what only the fitted tests show" if now > was else change
-    ]
+    why = f": {worst.name} got worse, the fit follows what only the fitted tests show" if now > was else ""
+    return [f"{change}{why}"]
 
 
 def mean_square(changes: Sequence[Change], side: str, weights: Sequence[float] | None = None) -> float:
