@@ -39,9 +39,8 @@ class Network(Structure, TableResult):
 
     def tables(self) -> tuple[Table, ...]:
         """What may be calibrated."""
-        return (
-            Table.of("What may be calibrated", self.parameters, "parameter=name | value | unit | prior sd=prior_sd"),
-        )
+        columns = "parameter=name | value | unit | prior sd=prior_sd"
+        return (Table.of("What may be calibrated", self.parameters, columns),)
 
     @property
     def sizes(self) -> str:
@@ -85,9 +84,8 @@ class Network(Structure, TableResult):
         mask = np.zeros(self.size, bool)
         for source in self.sources:
             mask[source.index[source.weights != 0.0]] = True
-        return tuple(
-            s for s, heats in zip(self.states, mask[: len(self.states)], strict=True) if heats and "#" not in s
-        )
+        each = zip(self.states, mask[: len(self.states)], strict=True)
+        return tuple(state for state, heats in each if heats and "#" not in state)
 
     @property
     def size(self) -> int:
@@ -102,12 +100,8 @@ class Network(Structure, TableResult):
         self, links: Iterable[Link] = (), sources: Iterable[Source] = (), parameters: Iterable[Parameter] = ()
     ) -> Network:
         """The same network with more physics; nothing already there changes."""
-        return replace(
-            self,
-            links=(*self.links, *links),
-            sources=(*self.sources, *sources),
-            parameters=(*self.parameters, *parameters),
-        )
+        every = (*self.parameters, *parameters)
+        return replace(self, links=(*self.links, *links), sources=(*self.sources, *sources), parameters=every)
 
     def surface_link(self, name: str, kind: str, place: str, other: str, law: Law) -> Link:
         """A link from a place to a fluid node or boundary, exact on the place's own shape of temperature."""

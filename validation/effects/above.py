@@ -40,7 +40,6 @@ class Above(ReadingEffect):
 
     kind = KIND
     title = "a declared law is off at high values of an input"
-    unit = "1"
     source = "definition: a map measured on another machine, a constant where the law bends"
     isolating_test = "two tests at constant load, one below and one above that value"
     typical = (-0.5, 0.5)

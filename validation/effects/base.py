@@ -41,7 +41,8 @@ class Effect(ABC):
     """Physics that a network may lack, at one place. With its parameter at neutral it changes nothing.
 
     kind, title : short name and words;  place : where it sits;  sits : where it may, in words
-    unit, sign, prior_sd, low, high : of its one parameter; sign is what physics allows (0: both)
+    unit, sign, prior_sd, low, high : of its one parameter, a share where it has no unit; sign is what physics allows
+        (0: both)
     at : speed, current, ... at which the parameter is what the effect amounts to ("" : everywhere)
     typical : usual magnitude in `unit`
     confused_with : kinds that leave a similar trace;  isolating_test : the test that sets it apart
@@ -59,7 +60,7 @@ class Effect(ABC):
     kind: ClassVar[str]
     title: ClassVar[str]
     sits: ClassVar[str] = "a place that its own file names"
-    unit: ClassVar[str]
+    unit: ClassVar[str] = "1"
     at: ClassVar[str] = ""
     source: ClassVar[str]
     isolating_test: ClassVar[str]
@@ -160,7 +161,6 @@ class PowerLaw(Effect):
 class WeakLinks(Effect):
     """Links that conduct or carry less than assumed: g = g0 (1 + a), low <= a <= 0."""
 
-    unit = "1"
     sign = -1
     low = -0.95
     high = 0.0

@@ -180,9 +180,8 @@ def case_reference(case: Case) -> Reference:
     new = reference_of(with_effects(case.model.network, effects_of(case), ()), case.usable, names)
     levels = stored.levels
     signals = {n: replace(one, level=levels.get(n, one.level)) for n, one in new.signals.items()}
-    return replace(
-        new, signals={**stored.signals, **signals}, sizes={**new.sizes, **stored.sizes}, errors=stored.errors
-    )
+    sizes = {**new.sizes, **stored.sizes}
+    return replace(new, signals={**stored.signals, **signals}, sizes=sizes, errors=stored.errors)
 
 
 def standing_reference(case: Case) -> Reference:

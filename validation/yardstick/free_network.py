@@ -55,12 +55,8 @@ def loss_factors(u: Array) -> Array:
     """(n, n_loss): 1, the size and square of every input, and of every pair the four products of these."""
     size = np.abs(u)
     single = [size, size**2]
-    pairs = [
-        size[:, [i]] ** p * size[:, [j]] ** q
-        for i, j in combinations(range(u.shape[1]), 2)
-        for p in (1, 2)
-        for q in (1, 2)
-    ]
+    both = combinations(range(u.shape[1]), 2)
+    pairs = [size[:, [i]] ** p * size[:, [j]] ** q for i, j in both for p in (1, 2) for q in (1, 2)]
     return np.column_stack([np.ones(len(u)), *single, *pairs])
 
 

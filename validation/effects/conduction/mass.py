@@ -11,7 +11,6 @@ class Mass(Effect):
     kind = "mass"
     title = "extra mass"
     sits = "a part with a heat capacity"
-    unit = "1"
     source = "definition: attached parts, fixture, water in the jacket"
     isolating_test = "weigh it; step the loss and read the first minutes"
     typical = (0.1, 1.0)

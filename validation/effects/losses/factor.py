@@ -11,7 +11,6 @@ class LossFactor(Effect):
     kind = "loss.factor"
     title = "a declared loss is off by a factor"
     sits = "a declared loss"
-    unit = "1"
     source = "definition: a loss map of another machine, a wrong number of phases or of watts per phase"
     isolating_test = "no-load and locked-rotor runs with a power meter"
     typical = (-0.5, 1.0)

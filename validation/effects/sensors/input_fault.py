@@ -60,7 +60,6 @@ class InputFault(Effect):
 
     chord: ClassVar[type[Chord]]
     sits = "an input that a law of the network reads, but none that is counted (speed, frequency)"
-    unit = "1"
     source = "definition; the laws that read it follow it"
     sign = 0
     fault = True

@@ -63,7 +63,6 @@ class SensorGain(ReadingFault):
 
     kind = "sensor.gain"
     title = "sensor reads a wrong slope"
-    unit = "1"
     source = "definition; wrong thermocouple type gives tens of percent"
     isolating_test = "compare with a reference sensor at two temperatures"
     typical = (-0.2, 0.2)
@@ -97,7 +96,6 @@ class SensorStem(ReadingFault):
 
     kind = "sensor.stem"
     title = "stem conduction pulls the reading to ambient"
-    unit = "1"
     source = "fin equation of the leads, a = h-dependent share (VDI/VDE 3511)"
     isolating_test = "insulate or anneal the leads; a second sensor with thinner wires"
     typical = (0.02, 0.2)
@@ -114,7 +112,6 @@ class SensorLoose(ReadingFault):
 
     kind = "sensor.loose"
     title = "sensor has come loose"
-    unit = "1"
     source = "definition: between the part and the air, it reads a mean of both"
     isolating_test = "look at the sensor; read the part with a second one"
     typical = (0.1, 1.0)
@@ -172,7 +169,6 @@ class Swap(ReadingFault):
     kind = "sensor.swap"
     title = "two channels are exchanged"
     sits = "two measured temperatures"
-    unit = "1"
     source = "definition"
     isolating_test = "warm one sensor by hand"
     typical = (1.0, 1.0)

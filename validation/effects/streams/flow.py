@@ -40,7 +40,6 @@ class Flow(Effect):
     kind = "flow"
     title = "fan or coolant flow differs from the stated one"
     sits = "a declared flow"
-    unit = "1"
     source = "definition; films follow the flow with the exponents the network declares"
     isolating_test = "measure the flow; inlet and outlet temperature at constant loss; run with the fan off"
     typical = (-0.5, 0.7)
@@ -104,7 +103,6 @@ class FanStop(Effect):
     kind = "fan.stop"
     title = "fan or pump stops during a test"
     sits = "a declared flow"
-    unit = "1"
     source = "definition: a tripped breaker, a slipped hose"
     isolating_test = "read the flow, or listen; repeat the test"
     typical = (0.3, 1.0)
