@@ -13,7 +13,8 @@ from lumped.transfer.laws import CLOCK, Fixed, InputPower, Law
 
 Interval = tuple[float, float]
 NOTHING: Interval = (0.0, 0.0)
-UNITS = {"speed": "rpm", "vehicle_speed": "m/s", "current": "A"}  # in which reference values are stated
+UNITS = {quantity: name.rpartition("_")[2] for quantity, name in INPUTS.items()}  # in which references are stated
+UNITS |= {"vehicle_speed": "m/s", "air_flow": "m3/h", "water_flow": "l/min"}
 
 
 @dataclass(frozen=True)

@@ -8,7 +8,7 @@ from validation.effects.build import conductance_scale, exchange, films, place_p
 
 
 class StirredAir(PowerLaw):
-    """Films on every face of a fluid grow with speed."""
+    """Films on every face of a fluid grow with speed, a in W/m2/K at its reference."""
 
     empirical = True
     unit = "W/m2/K"

@@ -44,7 +44,7 @@ def rippled_parts(network: Network) -> list[str]:
 
 
 class AddedLoss(PowerLaw):
-    """P = a times powers of what is recorded.  heats : the kind of loss it is ("copper", "iron", "friction", ...)"""
+    """P = a times powers of what is recorded, a in W.  heats : the kind of loss ("copper", "iron", "friction", ...)"""
 
     heats: ClassVar[str]
     empirical = True
