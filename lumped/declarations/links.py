@@ -87,8 +87,8 @@ def _needs_area(table: Table, has_area: bool) -> None:
 
 
 def _fixed(table: Table, has_area: bool) -> tuple[Law, bool] | None:
-    given = [key for key in COEFFICIENTS if key in table]
-    coefficient, of = _coefficient(table, has_area) if given else None, powers(table)
+    keys = [key for key in COEFFICIENTS if key in table]
+    coefficient, of = _coefficient(table, has_area) if keys else None, powers(table)
     if coefficient is None:
         return None
     return (InputPower(coefficient[0], of) if of else Fixed(coefficient[0])), coefficient[1]

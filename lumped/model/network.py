@@ -85,7 +85,7 @@ class Network(Structure, TableResult):
         for source in self.sources:
             mask[source.index[source.weights != 0.0]] = True
         each = zip(self.states, mask[: len(self.states)], strict=True)
-        return tuple(state for state, heats in each if heats and "#" not in state)
+        return tuple(s for s, heats in each if heats and "#" not in s)
 
     @property
     def size(self) -> int:

@@ -163,7 +163,7 @@ class Comparison(TableResult):
         return all(c.verdict == "within" for t in self.tests for c in t.channels)
 
     def document(self) -> dict:
-        known = {n: "declared" if i.declared else "guessed" for n, i in self.identities.items()}
+        origin = {n: "declared" if i.declared else "guessed" for n, i in self.identities.items()}
         return {
             "case": self.case,
             "model": {"revision": self.revision, "effects": list(self.effects)},
@@ -173,7 +173,7 @@ class Comparison(TableResult):
             "floor_K": self.floor_K,
             "words": self.words,
             "roles": [
-                {"name": n, "role": i.role, "turns": i.turns, "known": known[n], "evidence": i.why}
+                {"name": n, "role": i.role, "turns": i.turns, "known": origin[n], "evidence": i.why}
                 for n, i in self.identities.items()
             ],
         }

@@ -121,6 +121,6 @@ class FanStop(Effect):
         original = next(p for p in flows(network) if which.startswith(f"{p.name}:"))
         test = which.removeprefix(f"{original.name}:")
         stop, targets = Stopped(test, int(part)), {t for t, _ in original.targets}
-        moved = [x for x in model_links(network) if x.name in targets]
-        copies = {f"{self.name}:{x.name}": (x, Shaped.of(x.law, stop, "time_s")) for x in moved}
+        mine = [x for x in model_links(network) if x.name in targets]
+        copies = {f"{self.name}:{x.name}": (x, Shaped.of(x.law, stop, "time_s")) for x in mine}
         return with_parameter(copy_elements(network, copies), self.parameter(*copies))
