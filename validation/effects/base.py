@@ -13,8 +13,9 @@ from lumped.transfer.laws import CLOCK, Fixed, InputPower, Law
 
 Interval = tuple[float, float]
 NOTHING: Interval = (0.0, 0.0)
-UNITS = {quantity: name.rpartition("_")[2] for quantity, name in INPUTS.items()}  # in which references are stated
-UNITS |= {"vehicle_speed": "m/s", "air_flow": "m3/h", "water_flow": "l/min"}
+# In which reference values are stated
+UNITS = {"speed": "rpm", "vehicle_speed": "m/s", "current": "A", "torque": "Nm", "power": "W", "voltage": "V"}
+UNITS |= {"frequency": "Hz", "air_flow": "m3/h", "water_flow": "l/min", "share": "%", "flow_share": "%"}
 
 
 @dataclass(frozen=True)
