@@ -14,7 +14,8 @@ from validation.effects.base import Effect, Scene, with_parameter
 from validation.effects.build import Shaped, copy_elements
 from validation.effects.time_window import ALIKE, IN, Event, TimeWindow, event, odd_tests
 
-SAME = "kind title unit at source isolating_test typical sign low high neutral confused_with needs fault empirical"
+SAME = ["kind", "title", "unit", "at", "source", "isolating_test", "typical", "confused_with", "needs"]
+SAME += ["sign", "low", "high", "neutral", "fault", "empirical"]
 
 
 @dataclass(frozen=True)
@@ -26,7 +27,7 @@ class During(Effect):
     condition: str
 
     def __post_init__(self) -> None:
-        for name in SAME.split():  # of this one, as they are of the other
+        for name in SAME:  # of this one, as they are of the other
             object.__setattr__(self, name, getattr(self.base, name))
         object.__setattr__(self, "prior_sd", USUAL["switched"] * self.base.prior_sd)
         mapping = "offset" if self.base.mapping == "offset" else "amplitude"
