@@ -8,9 +8,8 @@ from functools import cached_property
 from typing import ClassVar, Literal
 
 import numpy as np
-from numpy.typing import NDArray
 
-from geom.arrays import Array
+from geom.arrays import Array, Ints
 from geom.errors import InputError
 from lumped.integration.record import instants
 from lumped.integration.signals import Signals
@@ -98,7 +97,7 @@ class Test:
     initial: float | Mapping[str, float] = 20.0
     frees: tuple[str, ...] = ()
     recorded: Recorded | None = None
-    blocks: NDArray[np.int64] | None = None
+    blocks: Ints | None = None
     __test__: ClassVar[bool] = False  # its name makes pytest think so
 
     def __repr__(self) -> str:

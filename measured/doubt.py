@@ -90,17 +90,3 @@ def temper(nats: float) -> float:
 def nats_worth(log_odds: float) -> float:
     """Log evidence that counts as some log odds once it is tempered."""
     return TEMPER["temper"].share * log_odds / (1.0 - TEMPER["temper per nat"].share * log_odds)
-
-
-def markdown() -> str:
-    """The table as docs/diagnosis.md shows it."""
-    rows = [f"| {name} | {line.sd:g} {line.unit} | {line.reason} |" for name, line in TABLE.items()]
-    shape = [f"| {name} | {line.sd:g} {line.unit} | {line.reason} |" for name, line in SHAPE.items()]
-    odds = [f"| {name} | {100.0 * o.share:g} % | {o.reason} |" for name, o in PRIOR.items()]
-    tempers = [f"| {name} | {o.share:g} | {o.reason} |" for name, o in TEMPER.items()]
-    rare = [f"| {name} | x {o.share:g} | {o.reason} |" for name, o in RARE.items()]
-    costs = [f"| {name} | {o.share:g} | {o.reason} |" for name, o in COSTS.items()]
-    head = ["| doubt | one sigma | reason |", "|---|---|---|", *rows, ""]
-    prior = ["| before the readings | share | reason |", "|---|---|---|", *odds, *rare, *tempers, ""]
-    form = ["| shape | value | reason |", "|---|---|---|", *shape, ""]
-    return "\n".join([*head, *form, *prior, "| statement | cost | reason |", "|---|---|---|", *costs])

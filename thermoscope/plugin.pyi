@@ -231,7 +231,7 @@ from validation.comparison.predict import (
 )
 from validation.comparison.uncertainty import RULE as RULE
 from validation.diagnosis import diagnose as diagnose, infer as infer
-from validation.effects.build import copy_link as copy_link, heat as heat_source
+from validation.effects.build import copy_element as copy_element, heat as heat_source
 from validation.inference.evidence import Evidence as Evidence
 from validation.inference.decide import Posterior as Posterior
 from validation.inference.hypotheses import probabilities as probabilities

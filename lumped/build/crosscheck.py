@@ -9,13 +9,14 @@ import numpy as np
 
 from fem.matrices.assembly import FieldModel
 from fem.solvers.solve import Fluids, Solver, Steady, steady
+from geom.arrays import Numbers
 from lumped.integration.steady import steady as steady_rest
 from lumped.model.multipliers import multipliers
 from lumped.model.network import Array, Network, Source
 from lumped.transfer.laws import Law
 from lumped.transfer.terms_value import coefficient
 
-Shares = Mapping[str, Mapping[str, float]]
+Shares = Mapping[str, Numbers]
 FLOOR = 0.1  # of the machine's largest rise: below it a percentage of a part's own rise means nothing
 
 
@@ -90,25 +91,17 @@ class Coefficients:
     inflow: Array
 
 
-def steady_state(
-    network: Network, inputs: Mapping[str, float], ambient: float, values: Mapping[str, float] | None = None
-) -> Array:
+def steady_state(network: Network, inputs: Numbers, ambient: float) -> Array:
     """(n + n_boundary,) temperatures the network settles at (degC)."""
-    return steady_rest(network, inputs, dict.fromkeys(network.boundaries, ambient), values).z
+    return steady_rest(network, inputs, dict.fromkeys(network.boundaries, ambient)).z
 
 
-def coefficients(
-    network: Network,
-    inputs: Mapping[str, float],
-    z: Array,
-    values: Mapping[str, float] | None = None,
-    shares: Shares | None = None,
-) -> Coefficients:
+def coefficients(network: Network, inputs: Numbers, z: Array, shares: Shares | None = None) -> Coefficients:
     """Film h and contact g (W/m2/K), losses (W) by place, and the streams' matrix among the fluid nodes.
 
     shares : source -> share of its watts per part, zone or fluid; None: by the mean nodes it heats
     """
-    m = multipliers(network, values)
+    m = multipliers(network)
     signals = {name: np.array([float(value)]) for name, value in inputs.items()}
     films: dict[str, float] = {}
     contacts: dict[str, float] = {}
@@ -145,7 +138,7 @@ def coefficients(
     return Coefficients(films, contacts, conductivity, watts, D, s)
 
 
-def _heated(network: Network, source: Source, shares: Shares | None) -> Mapping[str, float]:
+def _heated(network: Network, source: Source, shares: Shares | None) -> Numbers:
     if shares is not None:
         return shares[source.name]
     out: dict[str, float] = {}
@@ -162,7 +155,7 @@ def fluid_nodes(network: Network) -> tuple[str, ...]:
 def crosscheck(
     field: FieldModel,
     network: Network,
-    inputs: Mapping[str, float],
+    inputs: Numbers,
     ambient: float = 20.0,
     solver: Solver | None = None,
     loads: Mapping[str, Array] | None = None,
@@ -191,7 +184,7 @@ def _uniform(field: FieldModel, place: str) -> Array:
 
 
 def through(
-    field: FieldModel, network: Network, full: Steady, z: Array, u: Mapping[str, float], c: Coefficients
+    field: FieldModel, network: Network, full: Steady, z: Array, u: Numbers, c: Coefficients
 ) -> tuple[LinkCheck, ...]:
     """Heat through every contact and film of the field, beside the network's, largest difference first."""
     scale, out = max(full.injected, 1e-300), []

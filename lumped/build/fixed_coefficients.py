@@ -38,11 +38,8 @@ class FixedCoefficients:
     def moved(self, spread: float, seed: int = 0) -> FixedCoefficients:
         """The same with every film and contact times spread ** U(-1, 1)."""
         rng = np.random.default_rng(seed)
-        return replace(
-            self,
-            films=random_coefficients(self.films, spread, rng),
-            contacts=random_coefficients(self.contacts, spread, rng),
-        )
+        films, contacts = (random_coefficients(of, spread, rng) for of in (self.films, self.contacts))
+        return replace(self, films=films, contacts=contacts)
 
     def of_field(self, field: FieldModel) -> Array:
         """(n + n_fluid,) steady."""

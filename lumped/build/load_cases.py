@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-
 import numpy as np
 
 from fem.solvers.solve import coupled, film_columns
 from geom import Machine
+from geom.arrays import Numbers
 from lumped.build.crosscheck import coefficients, fluid_nodes
 from lumped.build.pipeline import means_network
 from lumped.condensation.linear import linear, unit_load
@@ -29,7 +28,7 @@ def load_cases(machine: Machine, reduction: Reduction) -> LoadCases:
     )
 
 
-def rated_watts(machine: Machine, network: Network) -> Mapping[str, float]:
+def rated_watts(machine: Machine, network: Network) -> Numbers:
     """Watts per part or zone at the rated point, windings at their reference temperature."""
     return loss_watts(machine, network, rated_inputs(machine))
 
@@ -45,9 +44,7 @@ def rated_streams(machine: Machine, network: Network) -> Array:
     return coefficients(network, rated_inputs(machine), z).streams
 
 
-def fluid_rises(
-    machine: Machine, reduction: Reduction, network: Network, rated: Mapping[str, float]
-) -> dict[str, float]:
+def fluid_rises(machine: Machine, reduction: Reduction, network: Network, rated: Numbers) -> dict[str, float]:
     """fluid -> K over the surroundings at the rated losses and the reduction's coefficients, as a network has it."""
     fluids, zones = fluid_nodes(network), list(reduction.zones)
     system = linear(network, reduction.films, reduction.contacts)

@@ -121,9 +121,8 @@ def _write(file: Path, choice: MeshChoice) -> None:
 def _read(file: Path) -> MeshChoice:
     with np.load(file) as data:
         content, parts = json.loads(str(data["arr_0"])), {part: data[part] for part in data if part != "arr_0"}
-    how: dict[str, Any] = {
-        key: tuple(value) if isinstance(value, list) else value for key, value in content["meshing"].items()
-    }
+    meshing = content["meshing"].items()
+    how: dict[str, Any] = {key: tuple(value) if isinstance(value, list) else value for key, value in meshing}
     rest = {key: content[key] for key in ("percent", "points", "unknowns", "met")}
     return MeshChoice(Meshing(**how, bends=Bends(parts)), **rest)
 
@@ -264,10 +263,8 @@ def _looked_for(looks: _Looks, accuracy: float, most: int) -> MeshChoice:
             return MeshChoice(how, percent, *looks.size(how), percent[worst] <= LARGEST_SHARE * accuracy)
         else:
             there, halvings = how.along(way, 0.5), ways[way]
-            moves = (
-                halvings.moves if len(halvings.moves) > halvings.level else (*halvings.moves, looks.moved(how, there))
-            )
-            how, ways[way] = there, _Way(moves, halvings.level + 1)
+            new = () if len(halvings.moves) > halvings.level else (looks.moved(how, there),)
+            how, ways[way] = there, _Way((*halvings.moves, *new), halvings.level + 1)
             stale |= _not_refined(ways) - set(IN_PLANE if way not in IN_PLANE else ways)  # ends and axis overlap
 
 
@@ -357,9 +354,8 @@ def _refined(looks: _Looks, how: Meshing, left: Mapping[str, float], most: int) 
     sizes = {way: looks.size(there)[1] for way, there in finer.items()}
     fits = {way: size for way, size in sizes.items() if size <= most}
     worst = max((left[way] for way in fits), default=0.0)
-    return min(
-        (way for way in fits if left[way] >= ALIKE * worst), key=lambda way: (fits[way], -left[way]), default=None
-    )
+    alike = (way for way in fits if left[way] >= ALIKE * worst)
+    return min(alike, key=lambda way: (fits[way], -left[way]), default=None)
 
 
 def _percent(hot: Kelvins, linear: Kelvins, ways: Mapping[str, _Way]) -> dict[str, float]:

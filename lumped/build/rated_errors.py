@@ -132,11 +132,9 @@ def at_multiplied_point(
     links = [(x, multipliers[x.name]) for x in built.network.links if x.name in multipliers]
     films = {x.places[0]: m for x, m in links if x.kind == "film"}
     contacts = {x.name.removeprefix("contact:"): m for x, m in links if x.kind == "contact"}
-    there = replace(
-        point,
-        films={face: films.get(face, 1.0) * h for face, h in point.films.items()},
-        contacts={pair: contacts.get(pair, 1.0) * g for pair, g in point.contacts.items()},
-    )
+    h = {face: films.get(face, 1.0) * h for face, h in point.films.items()}
+    g = {pair: contacts.get(pair, 1.0) * g for pair, g in point.contacts.items()}
+    there = replace(point, films=h, contacts=g)
     reader, T = Reader(field, network, there, looks), there.of_field(field)
     scale = rise_K / max(map(abs, reader.read(T).values()))
     return {name: scale * off for name, off in _largest(reader, _steady_and_step(there, T, field, network)).items()}

@@ -84,16 +84,8 @@ def _surface(field: FieldModel, shapes: Mapping[str, PartShape], key: str) -> Pl
     trace = field.films[key].trace
     shape = shapes[trace.part]
     X = _restricted(field, shape, trace)
-    return Place(
-        key,
-        "surface",
-        trace.part,
-        shape.states,
-        X.T @ (trace.mass @ X),
-        X.T @ trace.b,
-        trace.area,
-        field.films[key].fluid,
-    )
+    K, b = X.T @ (trace.mass @ X), X.T @ trace.b
+    return Place(key, "surface", trace.part, shape.states, K, b, trace.area, field.films[key].fluid)
 
 
 def _contact(field: FieldModel, shapes: Mapping[str, PartShape], key: str, touch: Touch, g: float) -> Link:

@@ -85,9 +85,8 @@ class Size:
         network = reduction.network(tolerance=0.0, max_states=max(requested, len(reduction.field.blocks)))
         nominal, *others = errors_at(points, reduction, network, cases)
         random = merged(others)
-        return cls(
-            requested, network, nominal, random, max(excess(nominal, accuracy), excess(random, accuracy)) <= RESERVE
-        )
+        most = max(excess(nominal, accuracy), excess(random, accuracy))
+        return cls(requested, network, nominal, random, most <= RESERVE)
 
     def document(self) -> dict[str, Any]:
         return {

@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
 
-from geom.arrays import Ints
+from geom.arrays import Ints, Numbers
 from lumped.model.network import Array, Link, Network
 from lumped.transfer.laws import CONSTANT, Fixed
 
@@ -26,12 +25,7 @@ class Linear:
     fluid: Ints
 
 
-def linear(
-    network: Network,
-    films: Mapping[str, float],
-    contacts: Mapping[str, float],
-    conductivity: Mapping[str, float] | None = None,
-) -> Linear:
+def linear(network: Network, films: Numbers, contacts: Numbers, conductivity: Numbers | None = None) -> Linear:
     """The solids of a condensed network with every fluid given; h and g in W/m2/K, factors on the conductivities."""
     factors = conductivity or {}
     P = np.zeros((len(network.states), network.size))

@@ -117,8 +117,5 @@ def _anywhere(shape: PartShape, xyz: Array, part: str, distance: float, nearest:
         if away[best] <= SNAP_M:
             return shape.elements.row(int(near[best]), weights[best])
     spot, mm = np.round(1e3 * xyz, 1), np.round(1e3 * nearest, 1)
-    raise InputError(
-        f"the point {spot.tolist()} mm is not in part '{part}'",
-        "sensor",
-        f"nearest point of the part: {mm.tolist()} mm, {1e3 * distance:.1f} mm away",
-    )
+    right = f"nearest point of the part: {mm.tolist()} mm, {1e3 * distance:.1f} mm away"
+    raise InputError(f"the point {spot.tolist()} mm is not in part '{part}'", "sensor", right)

@@ -139,11 +139,8 @@ class Reduction:
     def random_point(self, seed: int) -> Point:
         """Every film and contact times spread ** U(-1, 1)."""
         rng, spread = np.random.default_rng([self.recipe.seed, seed]), self.recipe.spread
-        return Point(
-            f"random {seed}",
-            random_coefficients(self.films, spread, rng),
-            random_coefficients(self.contacts, spread, rng),
-        )
+        films, contacts = (random_coefficients(of, spread, rng) for of in (self.films, self.contacts))
+        return Point(f"random {seed}", films, contacts)
 
     def early_point(self, seed: int) -> Point:
         """A random one after one step from a cold machine: what heats it has not gone far."""

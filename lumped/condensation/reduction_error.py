@@ -55,14 +55,7 @@ class Errors:
 
     def document(self) -> dict[str, Any]:
         """The three numbers and where they arise."""
-        return {
-            "mean": self.mean,
-            "hot": self.hot,
-            "point": self.point,
-            "mean_part": self.mean_part,
-            "hot_part": self.hot_part,
-            "point_part": self.point_part,
-        }
+        return {key: value for key, value in vars(self).items() if key != "parts"}
 
     def __str__(self) -> str:
         return f"{self.mean:.2f}/{self.hot:.2f}/{self.point:.2f} % ({self.mean_part}, {self.hot_part})"
@@ -77,12 +70,8 @@ def worst(parts: Mapping[str, PartError]) -> Errors:
 
 def merged(errors: Sequence[Errors]) -> Errors:
     """Part by part the worst of several comparisons."""
-    return worst(
-        {
-            part: PartError(*(max(getattr(e.parts[part], k) for e in errors) for k in ("mean", "hot", "point")))
-            for part in errors[0].parts
-        }
-    )
+    kinds, parts = ("mean", "hot", "point"), errors[0].parts
+    return worst({p: PartError(*(max(getattr(e.parts[p], kind) for e in errors) for kind in kinds)) for p in parts})
 
 
 def errors(network: Network, full: Array, x: Array, largest: float | None = None, floor: float = FLOOR) -> Errors:
@@ -119,11 +108,8 @@ def _part(T: Array, sampled: Array, shape: PartShape, floor: float, rng: np.rand
     mean, off = w @ T, T - sampled
     at = rng.choice(len(T), min(POINTS, len(T)), replace=False)
     rise = max(abs(float(mean)), floor)
-    return PartError(
-        100 * abs(float(w @ off)) / rise,
-        100 * abs(float(T.max() - sampled.max())) / max(float(T.max()), floor),
-        100 * float(np.abs(off[at]).max()) / rise,
-    )
+    hottest = abs(float(T.max() - sampled.max())) / max(float(T.max()), floor)
+    return PartError(100 * abs(float(w @ off)) / rise, 100 * hottest, 100 * float(np.abs(off[at]).max()) / rise)
 
 
 @dataclass(frozen=True)

@@ -5,7 +5,7 @@ Outside a stated range it warns with a RangeWarning that carries the number and 
 """
 
 from lumped.correlations.info import Info
-from lumped.correlations.tabulate import film_tabulated, tabulated
+from lumped.correlations.tabulate import film_tabulated
 from lumped.transfer.ranges import RangeWarning
 
-__all__ = ["Info", "RangeWarning", "film_tabulated", "tabulated"]
+__all__ = ["Info", "RangeWarning", "film_tabulated"]

@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterable
 import numpy as np
 
 from lumped.correlations.info import Info, domain
-from lumped.transfer.laws import FILMS, FIRST_C, STEP_K, USUAL_RISE_K, FilmTable, Table
+from lumped.transfer.laws import FILMS, FIRST_C, STEP_K, USUAL_RISE_K, FilmTable
 from lumped.transfer.ranges import Domain, within_silence
 
 # A fifth apart: between two a film of the power 1/4 is straight to 0.1 %.
@@ -30,19 +30,3 @@ def film_tabulated(
         if not holds.degC or not holds.degC[0] <= USUAL_C <= holds.degC[-1]:  # a size for which it is not meant
             holds = Domain(", ".join(at(USUAL_C, USUAL_RISE_K)[1].words))
         return FilmTable(grid, h, holds)
-
-
-def tabulated(
-    correlation: Callable[[float, float], tuple[float, Info]],
-    differences: Iterable[float] = STILL_AIR_K,
-    fluid_temperature: float = 20.0,
-) -> Table:
-    """Temperature law from `correlation(surface degC, fluid degC) -> (h, info)` at a fixed fluid temperature (degC).
-
-    The default grid holds a quarter-power law to 0.1 % above 1 K. At small differences the table leaves
-    the correlation's range by construction, so range warnings are silent here.
-    """
-    grid = tuple(float(d) for d in differences)
-    with within_silence():
-        h = tuple(float(correlation(fluid_temperature + d, fluid_temperature)[0]) for d in grid)
-    return Table(grid, h)

@@ -59,18 +59,18 @@ def still_surfaces() -> dict[str, Callable[[Table, Of], Still]]:
     from lumped.correlations import fins, natural
 
     def fin_array(t: Table, of: Of) -> Still:
-        return partial(
-            fins.van_de_pol_tierney, millimetres(t, "depth_mm"), millimetres(t, "spacing_mm"), _size(t), of=of
-        )
+        depth, spacing = millimetres(t, "depth_mm"), millimetres(t, "spacing_mm")
+        return partial(fins.van_de_pol_tierney, depth, spacing, _size(t), of=of)
+
+    def slender(t: Table, of: Of) -> Still:
+        return partial(natural.popiel_cylinder, _size(t), millimetres(t, "diameter_mm"), of=of)
 
     return {
         "horizontal cylinder": lambda t, of: partial(natural.churchill_chu_cylinder, _size(t), of=of),
         "vertical plate": lambda t, of: partial(natural.churchill_chu_plate, _size(t), of=of),
         "plate facing up": lambda t, of: partial(natural.mcadams_plate, _size(t), upward=True, of=of),
         "plate facing down": lambda t, of: partial(natural.mcadams_plate, _size(t), upward=False, of=of),
-        "vertical cylinder": lambda t, of: partial(
-            natural.popiel_cylinder, _size(t), millimetres(t, "diameter_mm"), of=of
-        ),
+        "vertical cylinder": slender,
         "vertical fins": fin_array,
         "horizontal fins": lambda t, of: partial(fins.jones_smith, millimetres(t, "spacing_mm"), of=of),
         "parallel plates": lambda t, of: partial(fins.elenbaas, millimetres(t, "spacing_mm"), _size(t), of=of),

@@ -19,6 +19,7 @@ from lumped.transfer.shaft_fan import shaft_fan
 from lumped.transfer.streamed import Streamed
 
 ROTATING = ("disc", "shaft")
+COEFFICIENTS = ("G_W_K", "R_K_W", "h_W_m2K")
 Mechanism = tuple[str, Law, bool]
 Read = tuple[Law | list[Law], bool]
 
@@ -68,15 +69,12 @@ def mixed(table: Table) -> list[Law]:
     return [Fixed(factor, film), replace(forced, table=replace(forced.table, still=scaled, exponent=exponent))]
 
 
-def _coefficient(table: Table, has_area: bool, needed: bool = True) -> tuple[float, bool] | None:
+def _coefficient(table: Table, has_area: bool) -> tuple[float, bool]:
     """The number of a mechanism and whether it is per area."""
-    keys = [key for key in ("G_W_K", "R_K_W", "h_W_m2K") if key in table]
-    if len(keys) > 1:
-        raise table.error(f"{' and '.join(keys)} both given", "one of G_W_K, R_K_W, h_W_m2K")
-    if not keys:
-        if needed:
-            raise table.error("no coefficient", "one of G_W_K, R_K_W, h_W_m2K")
-        return None
+    keys = [key for key in COEFFICIENTS if key in table]
+    if len(keys) != 1:
+        what = f"{' and '.join(keys)} both given" if keys else "no coefficient"
+        raise table.error(what, f"one of {', '.join(COEFFICIENTS)}")
     value = table.number(keys[0])
     if keys[0] == "h_W_m2K" and not has_area:
         raise table.error("h_W_m2K without an area", "area_m2 = ... in the link, or a surface as its first end")
@@ -89,7 +87,8 @@ def _needs_area(table: Table, has_area: bool) -> None:
 
 
 def _fixed(table: Table, has_area: bool) -> tuple[Law, bool] | None:
-    coefficient, of = _coefficient(table, has_area, needed=False), powers(table)
+    keys = [key for key in COEFFICIENTS if key in table]
+    coefficient, of = _coefficient(table, has_area) if keys else None, powers(table)
     if coefficient is None:
         return None
     return (InputPower(coefficient[0], of) if of else Fixed(coefficient[0])), coefficient[1]
@@ -114,13 +113,11 @@ def _forced(table: Table, has_area: bool) -> Read:
     if not of:
         right = 'surface = ... with speed = "INPUT", or of = { input = "speed_rpm", at = 1000, exponent = 0.8 }'
         raise table.error("forced without an input", right)
-    assert coefficient is not None
     return InputPower(coefficient[0], of), coefficient[1]
 
 
 def _power(table: Table, has_area: bool) -> tuple[Law, bool]:
     coefficient, law = _coefficient(table, has_area), Power(table.number("exponent", 0.25, of="power.exponent"))
-    assert coefficient is not None
     return InputPower(coefficient[0], powers(table), law), coefficient[1]
 
 

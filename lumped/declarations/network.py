@@ -41,11 +41,8 @@ def read_identities(
     for name, table in around.items():
         if name not in boundaries:
             raise table.error(f"'{name}' is not a boundary", suggestion(name, boundaries))
-    out = {
-        name: statement
-        for name, table in {**nodes, **around}.items()
-        if (statement := _declared_identity(table)) is not None
-    }
+    each = {name: _declared_identity(table) for name, table in {**nodes, **around}.items()}
+    out = {name: statement for name, statement in each.items() if statement is not None}
     for table in around.values():
         table.close()
     return {**out, **{cell: identity(Role.COOLANT, False) for cell in cells}}
@@ -125,13 +122,8 @@ def _read(data: Mapping[str, Any], where: str) -> Network:
     if clash:
         raise head.error(f"'{min(clash)}' is a node and a boundary", "one or the other")
     identities = read_identities(top, nodes, boundaries, cells)
-    network = replace(
-        network,
-        places=_places(network, top, nodes, cells),
-        settles_s=settles,
-        declared=identities,
-        quantities=read_quantities(top),
-    )
+    network = replace(network, places=_places(network, top, nodes, cells), settles_s=settles)
+    network = replace(network, declared=identities, quantities=read_quantities(top))
     loops = [link for circuit in circuits.values() for link in circuit.links(network)]
     links = [*_links(network, top), *_streams(network, top), *loops]
     network = replace(network, links=tuple(links), sources=tuple(_sources(network, top)))
@@ -182,9 +174,8 @@ def _places(network: Network, top: Table, nodes: Mapping[str, Table], cells: Ite
         if abs(weights.sum() - 1.0) > 1e-9 or states.max() >= len(network.states):
             raise table.error(f"shares sum to {weights.sum():g}", "shares of nodes that sum to 1")
         table.close()
-        places[name] = Place(
-            name, "node", max(shares, key=lambda node: shares[node]), states, np.diag(weights), weights
-        )
+        main = max(shares, key=lambda node: shares[node])
+        places[name] = Place(name, "node", main, states, np.diag(weights), weights)
     return places
 
 
@@ -277,14 +268,12 @@ def _difference(measured: Source, other: Source) -> Source:
 
 def _checked(network: Network, where: str) -> Network:
     """Names that parameters act on exist, and the network can be a machine."""
-    items: list[Link | Source] = [*network.links, *network.sources]
-    names = {i.name for i in items} | {f"capacity:{s}" for s in network.states}
+    names = {i.name for i in network.elements} | {f"capacity:{s}" for s in network.states}
     for p in network.parameters:
         for target, _ in p.targets:
             if target not in names and not target.startswith(("bias:", "gain:", "lag:")):
-                raise InputError(
-                    f"acts on unknown '{target}'", f"{where} [parameters.{p.name}]", suggestion(target, names)
-                )
+                there = f"{where} [parameters.{p.name}]"
+                raise InputError(f"acts on unknown '{target}'", there, suggestion(target, names))
     # The network; InputError names the nodes that no heat can leave, and a network that stores none
     for island in islands(network):
         nodes = ", ".join(f"'{name}'" for name in island)

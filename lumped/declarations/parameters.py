@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import replace
 
-from lumped.model.network import Link, Network, Parameter, Source
+from lumped.model.network import Network, Parameter
 from lumped.schemas.bounds import TINY
 from lumped.schemas.reader import Table
 from lumped.sources.loss_laws import EDDY
@@ -37,12 +37,11 @@ def _companions(network: Network, parameter: Parameter) -> list[tuple[str, float
 def _inline(network: Network, top: Table, nodes: Mapping[str, Table]) -> list[Parameter]:
     """One parameter for every table that carries prior_sd: the multiplier of what it declares."""
     out = []
-    items: list[Link | Source] = [*network.links, *network.sources]
     for section, prefix in (("links", "link"), ("streams", "stream"), ("losses", "loss")):
         for name, table in top.tables(section).items():
             if "prior_sd" in table:
                 stem = f"{prefix}:{name}"
-                mine = [i.name for i in items if i.name == stem or i.name.startswith(f"{stem}:")]
+                mine = [i.name for i in network.elements if i.name == stem or i.name.startswith(f"{stem}:")]
                 acts = tuple((n, 1.0) for n in mine if ":less:" not in n)
                 sd, flow = table.number("prior_sd"), section == "streams"
                 out.append(Parameter(f"{prefix}.{name}", acts, prior_sd=sd, flow=flow))

@@ -152,19 +152,8 @@ def drive_cycle(
     load = vehicle.wheel_torque(0.0, np.asarray(slope, float))
     drag = float(vehicle.wheel_torque(1.0, 0.0) - vehicle.wheel_torque(0.0, 0.0))
     grip = vehicle.brakes * vehicle.mass * wheel
-    plant = np.array(
-        [
-            machine.L_af,
-            machine.L,
-            machine.J + vehicle.inertia(),
-            machine.B,
-            wheel,
-            drag,
-            vehicle.efficiency,
-            grip,
-            vehicle.regeneration,
-        ]
-    )
+    machine_ = machine.L_af, machine.L, machine.J + vehicle.inertia(), machine.B
+    plant = np.array([*machine_, wheel, drag, vehicle.efficiency, grip, vehicle.regeneration])
     control = np.array([getattr(controller, f) for f in controller.__dataclass_fields__])
     R = np.full(len(time), machine.R) if resistance is None else resistance
     arrays = (np.ascontiguousarray(x, float) for x in (time, target_mps, load, R))

@@ -12,7 +12,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from geom.arrays import Array, Ints
+from geom.arrays import Array, Ints, Number
 from geom.constants import ALPHA_CU, RPM
 from lumped.drives.limits import bisected, highest
 
@@ -42,10 +42,10 @@ class InductionMachine:
     alpha_s: float = ALPHA_CU
     alpha_r: float = ALPHA_AL
 
-    def stator_resistance(self, winding_degC: Array | float) -> Array:
+    def stator_resistance(self, winding_degC: Number) -> Array:
         return self.Rs * (1.0 + self.alpha_s * (np.asarray(winding_degC, float) - 20.0))
 
-    def cage_resistance(self, cage_degC: Array | float) -> Array:
+    def cage_resistance(self, cage_degC: Number) -> Array:
         return self.Rr * (1.0 + self.alpha_r * (np.asarray(cage_degC, float) - 20.0))
 
     @property
@@ -53,21 +53,16 @@ class InductionMachine:
         """Cage current over i_q."""
         return self.Lm / (self.Lm + self.Lr_leak)
 
-    def torque(self, i_d: Array | float, i_q: Array | float) -> Array:
+    def torque(self, i_d: Number, i_q: Number) -> Array:
         """N m"""
         return 1.5 * self.pole_pairs * self.Lm * self.coupling * np.asarray(i_d, float) * np.asarray(i_q, float)
 
-    def slip_speed(self, i_d: Array, i_q: Array, cage_degC: Array | float) -> Array:
+    def slip_speed(self, i_d: Array, i_q: Array, cage_degC: Number) -> Array:
         """Of the stator's field against the rotor (rad/s, electrical)."""
         return self.cage_resistance(cage_degC) * i_q / ((self.Lm + self.Lr_leak) * i_d)
 
     def operation(
-        self,
-        i_d: Array,
-        i_q: Array,
-        speed_rpm: Array | float,
-        winding_degC: Array | float = 20.0,
-        cage_degC: Array | float = 20.0,
+        self, i_d: Array, i_q: Array, speed_rpm: Number, winding_degC: Number = 20.0, cage_degC: Number = 20.0
     ) -> Operation:
         """What the machine does at two currents and a speed."""
         turning, slip = self.pole_pairs * np.asarray(speed_rpm, float) * RPM, self.slip_speed(i_d, i_q, cage_degC)
@@ -76,25 +71,13 @@ class InductionMachine:
         v_q = Rs * i_q + w * Ls * i_d
         cage = self.coupling * np.abs(i_q)
         share = np.divide(slip, w, out=np.full(np.shape(w), np.nan), where=w != 0.0)
-        return Operation(
-            np.asarray(i_d),
-            np.asarray(i_q),
-            self.torque(i_d, i_q),
-            np.hypot(v_d, v_q),
-            w / (2.0 * np.pi),
-            share,
-            cage,
-            1.5 * (v_d * i_d + v_q * i_q),
-            1.5 * Rs * (i_d**2 + i_q**2),
-            1.5 * self.cage_resistance(cage_degC) * cage**2,
-        )
+        currents, volts = (np.asarray(i_d), np.asarray(i_q)), np.hypot(v_d, v_q)
+        power, stator = 1.5 * (v_d * i_d + v_q * i_q), 1.5 * Rs * (i_d**2 + i_q**2)
+        rotor, frequency = 1.5 * self.cage_resistance(cage_degC) * cage**2, w / (2.0 * np.pi)
+        return Operation(*currents, self.torque(i_d, i_q), volts, frequency, share, cage, power, stator, rotor)
 
     def currents(
-        self,
-        torque: Array | float,
-        speed_rpm: Array | float,
-        winding_degC: Array | float = 20.0,
-        cage_degC: Array | float = 20.0,
+        self, torque: Number, speed_rpm: Number, winding_degC: Number = 20.0, cage_degC: Number = 20.0
     ) -> tuple[Array, Array]:
         """(i_d, i_q) (A) for the torque (N m) at the rated flux; at as much of it as current and voltage allow beyond.
 

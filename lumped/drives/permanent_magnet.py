@@ -9,7 +9,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from geom.arrays import Array, Mask
+from geom.arrays import Array, Mask, Number
 from geom.constants import ALPHA_CU, RPM
 from lumped.drives.limits import bisected, highest
 
@@ -34,44 +34,35 @@ class PMMachine:
     alpha_R: float = ALPHA_CU
     alpha_B: float = -1.1e-3
 
-    def resistance(self, winding_degC: Array | float) -> Array:
+    def resistance(self, winding_degC: Number) -> Array:
         return self.R * (1.0 + self.alpha_R * (np.asarray(winding_degC, float) - 20.0))
 
-    def flux(self, magnet_degC: Array | float) -> Array:
+    def flux(self, magnet_degC: Number) -> Array:
         return self.psi * (1.0 + self.alpha_B * (np.asarray(magnet_degC, float) - 20.0))
 
-    def torque(self, i_d: Array | float, i_q: Array | float, magnet_degC: Array | float = 20.0) -> Array:
+    def torque(self, i_d: Number, i_q: Number, magnet_degC: Number = 20.0) -> Array:
         """N m"""
         i_d = np.asarray(i_d, float)
         return 1.5 * self.pole_pairs * (self.flux(magnet_degC) + (self.Ld - self.Lq) * i_d) * np.asarray(i_q, float)
 
     def voltages(
-        self,
-        i_d: Array,
-        i_q: Array,
-        speed_rpm: Array | float,
-        winding_degC: Array | float = 20.0,
-        magnet_degC: Array | float = 20.0,
+        self, i_d: Array, i_q: Array, speed_rpm: Number, winding_degC: Number = 20.0, magnet_degC: Number = 20.0
     ) -> tuple[Array, Array]:
         """(v_d, v_q) peak phase voltage (V); a speed has its sign."""
         w, R = self.pole_pairs * np.asarray(speed_rpm, float) * RPM, self.resistance(winding_degC)
         return R * i_d - w * self.Lq * i_q, R * i_q + w * (self.Ld * i_d + self.flux(magnet_degC))
 
-    def voltage(self, i_d: Array, i_q: Array, *at: Array | float) -> Array:
+    def voltage(self, i_d: Array, i_q: Array, *at: Number) -> Array:
         """Peak phase voltage (V);  at : speed and temperatures as of `voltages`."""
         return np.hypot(*self.voltages(i_d, i_q, *at))
 
-    def power(self, i_d: Array, i_q: Array, *at: Array | float) -> Array:
+    def power(self, i_d: Array, i_q: Array, *at: Number) -> Array:
         """Electrical power taken (W); negative where the machine generates.  at : speed and temperatures."""
         v_d, v_q = self.voltages(i_d, i_q, *at)
         return 1.5 * (v_d * i_d + v_q * i_q)
 
     def currents(
-        self,
-        torque: Array | float,
-        speed_rpm: Array | float,
-        winding_degC: Array | float = 20.0,
-        magnet_degC: Array | float = 20.0,
+        self, torque: Number, speed_rpm: Number, winding_degC: Number = 20.0, magnet_degC: Number = 20.0
     ) -> tuple[Array, Array]:
         """(i_d, i_q) (A) of the least current that gives the torque (N m) within current and voltage limit.
 

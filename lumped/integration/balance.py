@@ -72,14 +72,10 @@ def counted(network: Network, core: Compiled, run: Run, way: Walk) -> Balance:
     through = np.stack([_through(network, core, mean), floats(mean[at] for at in _rows(core))])
     heat, left = _counted(core, way, through, run.time.size)
     links, n = len(network.links), len(network.states)
-    return Balance(
-        run.time,
-        {name: heat[:, e] for e, name in enumerate(core.names[:links])},
-        {name: -left[:, links + s] for s, name in enumerate(core.names[links:])},
-        left[:, :links].sum(axis=1),
-        (run.z[:, :n] - run.z[0, :n]) @ (core.C * mean),
-        run.z,
-    )
+    through_links = {name: heat[:, e] for e, name in enumerate(core.names[:links])}
+    injected = {name: -left[:, links + s] for s, name in enumerate(core.names[links:])}
+    stored = (run.z[:, :n] - run.z[0, :n]) @ (core.C * mean)
+    return Balance(run.time, through_links, injected, left[:, :links].sum(axis=1), stored, run.z)
 
 
 @dataclass(frozen=True)

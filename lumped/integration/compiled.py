@@ -137,15 +137,8 @@ def _pack_tangents(
     every = (*network.states, *network.boundaries)
     for j, name in enumerate(shifts, len(slope)):
         first[every.index(name) if name else np.flatnonzero(~hidden), j] = 1.0
-    return Tangents(
-        np.array([x[0] for x in triplets], np.int64),
-        np.array([x[1] for x in triplets], np.int64),
-        np.array([x[2] for x in triplets], float),
-        state,
-        column,
-        dC[column, state],
-        first,
-    )
+    tangent, term = (np.array([x[k] for x in triplets], np.int64) for k in (0, 1))
+    return Tangents(tangent, term, np.array([x[2] for x in triplets], float), state, column, dC[column, state], first)
 
 
 @once
@@ -224,14 +217,9 @@ def control(
     hidden = hidden_states(network)
     acts = [(p, x, f) for p, x, f in zip(every.patterns, m.tolist(), factors, strict=True) if x != 0.0 and not p.heats]
     holds = not hidden.any() and all(p.monotone and x * _extreme(f, x > 0.0) >= 0.0 for p, x, f in acts)
-    return Control(
-        state_units(network),
-        (~hidden).astype(np.int64),
-        np.array([precision.error_K, precision.error_share]),
-        np.array([holds], np.int64),
-        np.array([HOTTEST]),
-        np.zeros(1, np.int64),
-    )
+    units, limits = state_units(network), np.array([precision.error_K, precision.error_share])
+    visible, holding = (~hidden).astype(np.int64), np.array([holds], np.int64)
+    return Control(units, visible, limits, holding, np.array([HOTTEST]), np.zeros(1, np.int64))
 
 
 def _extreme(f: Array, least: bool) -> float:

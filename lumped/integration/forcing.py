@@ -31,14 +31,12 @@ def boundary_table(network: Network, boundaries: Mapping[str, Array | float], nt
     out = np.empty((nt, len(network.boundaries)))
     for k, name in enumerate(network.boundaries):
         if name not in boundaries:
-            raise InputError(
-                f"boundary '{name}' is missing", "record", f"the network needs {', '.join(network.boundaries)}"
-            )
+            right = f"the network needs {', '.join(network.boundaries)}"
+            raise InputError(f"boundary '{name}' is missing", "record", right)
         value = np.asarray(boundaries[name], float)
         if value.shape not in ((), (nt,)) or not np.all(np.isfinite(value)):
-            raise InputError(
-                f"boundary '{name}' is not finite or has shape {value.shape}", "record", f"a number or ({nt},)"
-            )
+            what = f"boundary '{name}' is not finite or has shape {value.shape}"
+            raise InputError(what, "record", f"a number or ({nt},)")
         out[:, k] = value
     return out
 

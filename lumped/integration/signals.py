@@ -221,11 +221,8 @@ class Signals(dict[str, Array]):
         if value.shape not in ((), (size,)):
             raise InputError(f"the input factor has shape {value.shape}", f"'{name}'", f"() or ({size},)")
         if not np.all(np.isfinite(value)):
-            raise InputError(
-                "is not finite at the inputs of this run",
-                f"'{name}'",
-                f"check {', '.join(law.reads) or 'its numbers'}: no negative exponent of 0",
-            )
+            right = f"check {', '.join(law.reads) or 'its numbers'}: no negative exponent of 0"
+            raise InputError("is not finite at the inputs of this run", f"'{name}'", right)
         return value
 
 

@@ -204,10 +204,8 @@ class _Course:
         self.moved[1].D[:, : self.tangents] = core.tangents.first
         if begin:
             self.moved[1].D[:, : self.tangents] = begin.D[self.order, : self.tangents]
-            self.position.clock[[kernel.NEXT, kernel.LOW]] = (
-                begin.step,
-                min(begin.coldest, self.position.clock[kernel.LOW]),
-            )
+            coldest = min(begin.coldest, self.position.clock[kernel.LOW])
+            self.position.clock[[kernel.NEXT, kernel.LOW]] = begin.step, coldest
 
     def over(self, part: slice, rests: bool) -> None:
         """The knots of a part of the record, from a balance of the states without capacity if so asked."""
@@ -275,15 +273,8 @@ class _Course:
         end = Stand(x, D, float(clock[kernel.NEXT]), float(clock[kernel.LOW]))
         steps = Steps(*(np.concatenate(x) for x in zip(*self.steps, strict=True)))
         dy = np.ascontiguousarray(self.dy[:, :, : self.tangents]) if self.tangents else None
-        return Run(
-            self.time,
-            self.z if len(self.z) else None,
-            self.y,
-            dy,
-            end,
-            steps,
-            np.concatenate(self.path) if self.path else None,
-        )
+        z, path = self.z if len(self.z) else None, np.concatenate(self.path) if self.path else None
+        return Run(self.time, z, self.y, dy, end, steps, path)
 
 
 def ends(X: kernel.Trace, count: int) -> Array:

@@ -69,9 +69,8 @@ class Ways:
 
     def past(self, flow: float, fluid: Fluid) -> float:
         """What does not turn with the rotor: of a flow (m3/h), what passes walls that stand."""
-        return 1.0 - sum(
-            self.share(way, flow, fluid) for way in self.rated if way in self.ducts and self.ducts[way].turns
-        )
+        turning = [way for way in self.rated if way in self.ducts and self.ducts[way].turns]
+        return 1.0 - sum(self.share(way, flow, fluid) for way in turning)
 
     @cached_property
     def rated(self) -> dict[str, float]:
@@ -162,8 +161,7 @@ def _stream(network: Network, edges: list[tuple[str, str]], rate: Law, usual: fl
     """Upwind cells: each takes up flow x heat capacity x (own temperature - what flows in);  usual : flow (m3/h)"""
     a, b = ([network.column(edge[k]) for edge in edges] for k in (0, 1))
     rows, cols, vals = np.array(b + b), np.array(b + a), np.repeat([1.0, -1.0], len(edges))
-    law = OneWay(
-        rate, "fan_flow_m3h", "[fans]", "a flow from left to right: what comes in at the right is not known", usual
-    )
+    right = "a flow from left to right: what comes in at the right is not known"
+    law = OneWay(rate, "fan_flow_m3h", "[fans]", right, usual)
     intake = Row(np.array([network.column("ambient")]), np.ones(1))
     return Link(f"stream:fan:{edges[0][1]}", "stream", edges[0], rows, cols, vals, law, intake, NOTHING)

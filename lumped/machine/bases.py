@@ -59,18 +59,14 @@ def on_every_base(network: Network) -> Network:
 
 def switched(machine: Machine, network: Network) -> Network:
     """The network with every base coupled by its input."""
-    table = machine.sections.get("bases", {})
-    for switch, foot in {
-        f"on_{name}": "foot" if machine_ == THIS_MACHINE else f"foot.{name}" for name, machine_ in table.items()
-    }.items():
-        network = _coupled(network, switch, foot)
+    for name, of in machine.sections.get("bases", {}).items():
+        network = _coupled(network, f"on_{name}", "foot" if of == THIS_MACHINE else f"foot.{name}")
     return network
 
 
 def _coupled(network: Network, switch: str, foot: str) -> Network:
-    joint = next(
-        x for x in network.links if x.kind == "contact" and foot in x.places and not _of_base(network, x.places)
-    )
+    joints = (x for x in network.links if x.kind == "contact" and foot in x.places)
+    joint = next(x for x in joints if not _of_base(network, x.places))
     body = next(place for place in joint.places if place != foot)
     links = [replace(x, law=Switched(x.law, switch, True)) if x is joint else x for x in network.links]
     states = [i for i, state in enumerate(network.states) if state == body or state.startswith(f"{body}#")]

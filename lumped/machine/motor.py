@@ -51,11 +51,8 @@ COPPER, RESIN = 8930.0, 1350.0  # kg/m3, as in the mixtures of geom.description.
 
 def means(machine: Machine, network: Network) -> dict[str, Place]:
     """Name -> place; its mean row is what the sensor sees."""
-    section = machine.sections.get("sensors", {})
-    return {
-        name: _mean(machine, network, name, Table(data, f"{machine.name} [sensors] {name}"))
-        for name, data in section.items()
-    }
+    section, where = machine.sections.get("sensors", {}), f"{machine.name} [sensors]"
+    return {name: _mean(machine, network, name, Table(data, f"{where} {name}")) for name, data in section.items()}
 
 
 def _mean(machine: Machine, network: Network, name: str, table: Table) -> Place:

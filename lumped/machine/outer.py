@@ -89,10 +89,8 @@ def outer_films(machine: Machine, part: str, films: Films) -> dict[str, Law]:
     Still and blown air do not add: "blown" is what is beyond still air of (h_blown^3 + h_still^3)^(1/3) (Churchill).
     """
     outer, cowl = outer_of(machine, part, films), cowl_of(machine)
-    laws: dict[str, Law] = {
-        "natural": Fixed(outer.factor, still_air(outer)),
-        "radiation": Fixed(outer.emissivity * outer.view, Radiation()),
-    }
+    natural, radiation = Fixed(outer.factor, still_air(outer)), Fixed(outer.emissivity * outer.view, Radiation())
+    laws: dict[str, Law] = {"natural": natural, "radiation": radiation}
     blown = _fan(outer.fan) if outer.fan is not None else None if cowl is None else _blown(machine, part, cowl)
     return laws if blown is None else {**laws, "blown": _excess(blown, outer)}
 

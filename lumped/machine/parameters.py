@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 
 from geom.description.machine import Machine
 from geom.errors import InputError
@@ -53,18 +54,10 @@ def parameters(
         group = face.part if face.fluid == "ambient" else stem(str(face.fluid))
         for link in (x for x in films if x.places[0] == face.name):
             groups.setdefault("oil" if link.name.endswith(SPRAY) else group, []).append((link.name, 1.0))
-    return [
-        *[
-            Parameter(f"h.{group}", tuple(acts), prior_sd=0.3, low=0.1, high=10.0, source="spread of film correlations")
-            for group, acts in groups.items()
-            if acts
-        ],
-        *_contacts(network),
-        *_losses(losses),
-        _capacity(network),
-        *out,
-        *_conductivities(machine, network),
-    ]
+    film = Parameter("", (), prior_sd=0.3, low=0.1, high=10.0, source="spread of film correlations")
+    heat = [replace(film, name=f"h.{group}", targets=tuple(acts)) for group, acts in groups.items() if acts]
+    heat += [*_contacts(network), *_losses(losses), _capacity(network)]
+    return [*heat, *out, *_conductivities(machine, network)]
 
 
 def _contacts(network: Network) -> list[Parameter]:

@@ -44,18 +44,15 @@ def part_identities(machine: Machine, contacts: Iterable[str]) -> dict[str, Iden
     while len(turning_parts) > count:
         count = len(turning_parts)
         turning_parts |= {part for pair in joints if turning_parts & set(pair) for part in pair}
-    hung = frozenset(turning_parts)
     return {
-        name: identity_of[name] if identity_of[name].turns is not None else _turned(identity_of[name], name in hung)
-        for name in identity_of
+        name: _turned(one, name in turning_parts) if one.turns is None else one for name, one in identity_of.items()
     }
 
 
 def _turned(identity: Identity, turns: bool) -> Identity:
     role = Role.ROTOR if identity.role is Role.IRON and turns else identity.role
-    return replace(
-        identity, role=role, turns=turns, why=f"{identity.why}, {'hangs on the shaft' if turns else 'stands'}"
-    )
+    why = f"{identity.why}, {'hangs on the shaft' if turns else 'stands'}"
+    return replace(identity, role=role, turns=turns, why=why)
 
 
 def _by_material(machine: Machine, part: Part) -> Identity:

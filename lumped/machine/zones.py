@@ -29,12 +29,10 @@ def _slots(machine: Machine) -> dict[str, Zone]:
     reach = [] if bars is None else [_reach(machine.part(layer)) for layer in bars.layers]
     out = _teeth(machine, min(r[0] for r in reach), max(r[1] for r in reach)) if reach else {}
     for winding in machine.parts:
-        if not wound(machine, winding.name) or not (
-            len(winding.prisms) >= MANY and len({(z0, z1) for _, z0, z1 in winding.prisms}) == 1
-        ):
-            continue
-        low, high = _reach(winding)
-        out |= _split(winding.name, (low + high) / 2, "inner", "outer") | _teeth(machine, low, high)
+        straight = len({(z0, z1) for _, z0, z1 in winding.prisms}) == 1
+        if wound(machine, winding.name) and len(winding.prisms) >= MANY and straight:
+            low, high = _reach(winding)
+            out |= _split(winding.name, (low + high) / 2, "inner", "outer") | _teeth(machine, low, high)
     return out
 
 
@@ -52,11 +50,8 @@ def _teeth(machine: Machine, low: float, high: float) -> dict[str, Zone]:
 
 def _coils(machine: Machine) -> dict[str, Zone]:
     """One coil per pole."""
-    return {
-        f"{name}.{k + 1}": Zone(name, _nearest(np.array(coils.axes), k))
-        for name, coils in machine.features.coils.items()
-        for k in range(len(coils.axes))
-    }
+    axes = [(name, np.array(coils.axes)) for name, coils in machine.features.coils.items()]
+    return {f"{name}.{k + 1}": Zone(name, _nearest(at, k)) for name, at in axes for k in range(len(at))}
 
 
 def _nearest(axes: Array, k: int) -> Callable[[Array], Array]:

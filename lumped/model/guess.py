@@ -29,9 +29,8 @@ def identities(network: Structure) -> Mapping[str, Identity]:
     guesses = _boundaries(top, roles)
     guesses |= _fluids(top, {**roles, **{b: role for b, (role, _) in guesses.items()}})
     guesses |= _bodies(top, {b: t for b, (t, _) in turns.items()}, roles)
-    return {n: _one(n, statements.get(n), guesses.get(n), turns.get(n)) for n in names} | {
-        n: i for n, i in statements.items() if n not in names
-    }
+    others = {n: i for n, i in statements.items() if n not in names}
+    return {n: _one(n, statements.get(n), guesses.get(n), turns.get(n)) for n in names} | others
 
 
 def _one(name: str, statement: Identity | None, guess: Evidence | None, turns: tuple[bool, str] | None) -> Identity:
@@ -140,9 +139,8 @@ def _by_heat(top: Topology, body: str, turns: Mapping[str, bool]) -> Evidence | 
 
 def _has_separate_current(top: Topology, body: str, turns: Mapping[str, bool]) -> bool:
     """Does its copper loss follow none of the inputs that a standing one follows, while there is a standing one?"""
-    others = [
-        top.reads[b, "copper"] for b in top.bodies if b != body and not turns.get(b) and (b, "copper") in top.reads
-    ]
+    still = [b for b in top.bodies if b != body and not turns.get(b)]
+    others = [top.reads[b, "copper"] for b in still if (b, "copper") in top.reads]
     mine = top.reads.get((body, "copper"), frozenset())
     return bool(others) and not any(mine & other for other in others)
 

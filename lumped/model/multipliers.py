@@ -39,11 +39,9 @@ def _targets(network: Network, parameter: Parameter, valid: set[str]) -> list[tu
     thermal = [(t, e) for t, e in parameter.targets if not t.startswith(CHANNEL_OPERATORS)]
     for target, _ in thermal:
         if target not in valid:
-            raise InputError(
-                f"target '{target}' is not a link, source or capacity group",
-                f"parameter '{parameter.name}' of {network.title}",
-                f"known: {', '.join(sorted(valid))}",
-            )
+            what = f"target '{target}' is not a link, source or capacity group"
+            where = f"parameter '{parameter.name}' of {network.title}"
+            raise InputError(what, where, f"known: {', '.join(sorted(valid))}")
     return thermal
 
 

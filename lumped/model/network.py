@@ -39,9 +39,8 @@ class Network(Structure, TableResult):
 
     def tables(self) -> tuple[Table, ...]:
         """What may be calibrated."""
-        return (
-            Table.of("What may be calibrated", self.parameters, "parameter=name | value | unit | prior sd=prior_sd"),
-        )
+        columns = "parameter=name | value | unit | prior sd=prior_sd"
+        return (Table.of("What may be calibrated", self.parameters, columns),)
 
     @property
     def sizes(self) -> str:
@@ -70,10 +69,14 @@ class Network(Structure, TableResult):
         return self.signals.get(quantity, INPUTS[quantity])
 
     @property
+    def elements(self) -> list[Link | Source]:
+        """Links, then sources."""
+        return [*self.links, *self.sources]
+
+    @property
     def inputs(self) -> set[str]:
         """Names of the signals that the laws read (e.g. "current_A"), with their units in the name."""
-        items: list[Link | Source] = [*self.links, *self.sources]
-        return {name for item in items for name in item.law.reads}
+        return {name for item in self.elements for name in item.law.reads}
 
     @property
     def heated(self) -> tuple[str, ...]:
@@ -81,9 +84,8 @@ class Network(Structure, TableResult):
         mask = np.zeros(self.size, bool)
         for source in self.sources:
             mask[source.index[source.weights != 0.0]] = True
-        return tuple(
-            s for s, heats in zip(self.states, mask[: len(self.states)], strict=True) if heats and "#" not in s
-        )
+        each = zip(self.states, mask[: len(self.states)], strict=True)
+        return tuple(s for s, heats in each if heats and "#" not in s)
 
     @property
     def size(self) -> int:
@@ -98,12 +100,8 @@ class Network(Structure, TableResult):
         self, links: Iterable[Link] = (), sources: Iterable[Source] = (), parameters: Iterable[Parameter] = ()
     ) -> Network:
         """The same network with more physics; nothing already there changes."""
-        return replace(
-            self,
-            links=(*self.links, *links),
-            sources=(*self.sources, *sources),
-            parameters=(*self.parameters, *parameters),
-        )
+        every = (*self.parameters, *parameters)
+        return replace(self, links=(*self.links, *links), sources=(*self.sources, *sources), parameters=every)
 
     def surface_link(self, name: str, kind: str, place: str, other: str, law: Law) -> Link:
         """A link from a place to a fluid node or boundary, exact on the place's own shape of temperature."""
@@ -117,15 +115,6 @@ class Network(Structure, TableResult):
             rows += [np.full(k, col), np.array([col])]
             cols += [p.states, np.array([col])]
             vals += [-p.b, np.array([weight])]
+        row, column, value = (np.concatenate(x) for x in (rows, cols, vals))
         cold = Row(np.array([col]), np.array([1.0]))
-        return Link(
-            name,
-            kind,
-            (place, other),
-            np.concatenate(rows),
-            np.concatenate(cols),
-            np.concatenate(vals),
-            law,
-            p.mean,
-            cold,
-        )
+        return Link(name, kind, (place, other), row, column, value, law, p.mean, cold)

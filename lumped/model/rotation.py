@@ -18,12 +18,10 @@ def turning(top: Topology, statements: Mapping[str, bool]) -> dict[str, tuple[bo
 
     statements : body -> whether it is said to turn
     """
-    stand = {b: "declared" for b, turns in statements.items() if not turns} | {
-        b: why for b, why in standing(top).items() if not statements.get(b)
-    }
-    turn = {b: "declared" for b, turns in statements.items() if turns} | {
-        b: why for b, why in seeds(top, stand).items() if statements.get(b) is not False
-    }
+    stand = {b: "declared" for b, turns in statements.items() if not turns}
+    stand |= {b: why for b, why in standing(top).items() if not statements.get(b)}
+    turn = {b: "declared" for b, turns in statements.items() if turns}
+    turn |= {b: why for b, why in seeds(top, stand).items() if statements.get(b) is not False}
     turn = turn or {b: why for b, why in loose(top).items() if b not in statements}
     stand = {b: why for b, why in stand.items() if b not in turn}
     out = {b: (False, why) for b, why in stand.items()} | {b: (True, why) for b, why in turn.items()}

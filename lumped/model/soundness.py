@@ -17,11 +17,8 @@ def checked_names(names: Iterable[str], where: str) -> None:
     """InputError for a name that messages, tables and effects (KIND@PLACE) could not tell apart."""
     for name in names:
         if not name.strip() or plain_name(name, where).strip() != name or set(name) & RESERVED:
-            raise InputError(
-                f"{excerpt(name)} cannot be a name",
-                where,
-                f"letters that can be printed, none of {' '.join(sorted(RESERVED))}, no space at either end",
-            )
+            right = f"letters that can be printed, none of {' '.join(sorted(RESERVED))}, no space at either end"
+            raise InputError(f"{excerpt(name)} cannot be a name", where, right)
 
 
 def islands(network: Network) -> Iterator[list[str]]:
@@ -48,9 +45,6 @@ def checked_path(path: Sequence[str], where: str) -> Sequence[str]:
         raise InputError(f"path = {list(path)} leads nowhere", where, "two or more nodes, the inlet first")
     for name in path:
         if list(path).count(name) > 1:
-            raise InputError(
-                f"path passes '{name}' {list(path).count(name)} times",
-                where,
-                "each node once; a loop that returns is [circuits.NAME] with a reservoir",
-            )
+            right = "each node once; a loop that returns is [circuits.NAME] with a reservoir"
+            raise InputError(f"path passes '{name}' {list(path).count(name)} times", where, right)
     return path

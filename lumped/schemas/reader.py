@@ -76,11 +76,8 @@ class Table:
 
     def _bounded(self, key: str, value: Any, of: str, low: float | None = None, high: float | None = None) -> float:
         table = bounds(of or key)
-        range_ = Bounds(
-            table.low if low is None else max(low, table.low),
-            table.high if high is None else min(high, table.high),
-            table.whole,
-        )
+        least = table.low if low is None else max(low, table.low)
+        range_ = Bounds(least, table.high if high is None else min(high, table.high), table.whole)
         if not range_.hold(value):
             raise self.error(f"{key} = {excerpt(value)} is not possible", f"{range_.words}{meaning(key)}")
         return float(value)
@@ -97,10 +94,8 @@ class Table:
         value = self._needed(key, None, "[[numbers], ...]")
         if not isinstance(value, list) or not all(isinstance(row, list) for row in value):
             raise self.error(f"{key} = {excerpt(value)} is not possible", "a list of lists of numbers")
-        return [
-            tuple(self._bounded(f"{key}[{i}][{j}]", v, of or key) for j, v in enumerate(row))
-            for i, row in enumerate(value)
-        ]
+        cells = [[(f"{key}[{i}][{j}]", v) for j, v in enumerate(row)] for i, row in enumerate(value)]
+        return [tuple(self._bounded(cell, v, of or key) for cell, v in row) for row in cells]
 
     def word(self, key: str, default: str | None = None, options: Iterable[str] | None = None) -> str:
         value = self._needed(key, default, "a word")
@@ -144,9 +139,8 @@ class Table:
         """true or false; a word that says so is none."""
         value = self._needed(key, default, "true or false")
         if not isinstance(value, bool):
-            raise self.error(
-                f"{key} = {excerpt(value)} is not possible", f"true or false, without quotes{meaning(key)}"
-            )
+            right = f"true or false, without quotes{meaning(key)}"
+            raise self.error(f"{key} = {excerpt(value)} is not possible", right)
         return value
 
     def constants(self, of: str) -> dict[str, float]:
@@ -158,10 +152,8 @@ class Table:
 
     def tables(self, key: str) -> dict[str, Table]:
         """The named tables under a key: [key.NAME]."""
-        return {
-            name: Table(data, f"{self.where} [{key}.{name}]")
-            for name, data in Table(self.raw(key, {}), f"{self.where} [{key}]").data.items()
-        }
+        whole = Table(self.raw(key, {}), f"{self.where} [{key}]")
+        return {name: Table(data, f"{self.where} [{key}.{name}]") for name, data in whole.data.items()}
 
     def listed(self, key: str) -> list[Table]:
         """A list of tables, or one table."""

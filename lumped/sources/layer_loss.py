@@ -79,12 +79,7 @@ def from_map(copper: CopperLoss, speed: str, at: Sequence[float], factors: Seque
 def _added(copper: CopperLoss, speed: str, at: Array, factor: Array) -> StreamTable:
     """(k - 1) (1 + alpha (T - reference)) over ln(input) less the logarithm of resistivity, and over T."""
     resistivity = 1.0 + copper.alpha * (TEMPERATURES - copper.reference)
-    return StreamTable(
-        speed,
-        float(at[-1]),
-        copper.reference,
-        tuple(TEMPERATURES.tolist()),
-        tuple(np.log(resistivity).tolist()),
-        tuple(np.log(at).tolist()),
-        tuple(np.outer(resistivity, factor - 1.0).ravel().tolist()),
-    )
+    value = np.outer(resistivity, factor - 1.0).ravel()
+    grid = TEMPERATURES, np.log(resistivity), np.log(at), value
+    total, shift, number, added = (tuple(x.tolist()) for x in grid)
+    return StreamTable(speed, float(at[-1]), copper.reference, total, shift, number, added)

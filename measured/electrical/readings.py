@@ -80,16 +80,12 @@ class Winding:
 
     def rise(self, ohm: float) -> PropagatedUncertainty:
         """Rise over the cold temperature (K), with its uncertainty."""
-        readings = (
-            self.meter.reading("cold resistance", self.cold_ohm),
-            self.meter.reading("resistance", ohm),
-            self.beta,
-        )
+        cold, warm = self.meter.reading("cold resistance", self.cold_ohm), self.meter.reading("resistance", ohm)
 
         def result(R0: Any, R: Any, beta: Any) -> Any:
             return winding_rise(R, R0, beta, self.cold_C, self.reference_C)
 
-        return propagate(result, readings)
+        return propagate(result, (cold, warm, self.beta))
 
     def reading_sd(self, ohm: float) -> float:
         """Scatter (K) of single readings against each other: the resolution of the range, evenly spread."""

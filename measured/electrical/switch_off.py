@@ -9,6 +9,7 @@ Three ways, each with a standard uncertainty:
 from __future__ import annotations
 
 from collections.abc import Callable
+from contextlib import suppress
 from dataclasses import dataclass
 from typing import Any
 
@@ -88,16 +89,12 @@ def semilog(cooling: Cooling, rated_kW: float, within_s: float = 300.0) -> Extra
         words = f"first reading {first:g} s after switching off, within the {limit:g} s that count as none"
         return Extrapolated("IEC 60034-1", first, float(cooling.T[0]), cooling.reading_sd, words)
     if first > 2.0 * limit:
-        raise InputError(
-            f"first reading {first:g} s after switching off",
-            "IEC 60034-1",
-            f"not later than {2 * limit:g} s for {rated_kW:g} kW; or the test again",
-        )
+        right = f"not later than {2 * limit:g} s for {rated_kW:g} kW; or the test again"
+        raise InputError(f"first reading {first:g} s after switching off", "IEC 60034-1", right)
     if not cooling.falls:
         words = "readings rise after switching off: the highest counts"
-        return Extrapolated(
-            "IEC 60034-1", float(cooling.time[np.argmax(cooling.T)]), float(cooling.T.max()), cooling.reading_sd, words
-        )
+        at, most = float(cooling.time[np.argmax(cooling.T)]), float(cooling.T.max())
+        return Extrapolated("IEC 60034-1", at, most, cooling.reading_sd, words)
     return semilog_at(cooling, limit, within_s)
 
 
@@ -180,17 +177,9 @@ def _fit(cooling: Cooling, terms: int) -> _Fitted | None:
 
 def all_ways(cooling: Cooling, rated_kW: float) -> list[Extrapolated]:
     """The way IEC 60034-1 prescribes first, then every other way that these readings allow."""
-    ways: list[Callable[[], Extrapolated]] = [
-        lambda: semilog(cooling, rated_kW),
-        lambda: semilog_at(cooling),
-        lambda: rule_150(cooling),
-        lambda: exponentials(cooling),
-    ]
-    out = []
-    for i, way in enumerate(ways):
-        try:
-            out.append(way())
-        except InputError:
-            if i == 0:
-                raise
+    others: list[Callable[[Cooling], Extrapolated]] = [semilog_at, rule_150, exponentials]
+    out = [semilog(cooling, rated_kW)]
+    for way in others:
+        with suppress(InputError):
+            out.append(way(cooling))
     return out

@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
-from geom.arrays import Array
+from geom.arrays import Array, Ints
 
 INSTANTS = 180  # a fit looks at: matrices of a test stay below a megabyte
 
 
-def groups(nt: int, instants: int = INSTANTS) -> NDArray[np.int64]:
+def groups(nt: int, instants: int = INSTANTS) -> Ints:
     """Start of each block when `nt` samples are averaged to at most `instants`."""
     return np.arange(0, nt, max(1, -(-nt // instants)))
 
@@ -18,7 +17,7 @@ def groups(nt: int, instants: int = INSTANTS) -> NDArray[np.int64]:
 class Blocks:
     """Weighted sums of so many columns over the blocks that begin at `start`."""
 
-    def __init__(self, start: NDArray[np.int64], columns: int) -> None:
+    def __init__(self, start: Ints, columns: int) -> None:
         self.start, self.sums = start, np.zeros((start.size, columns))
         self.weight, self.count = np.zeros(start.size), np.zeros(start.size)
 

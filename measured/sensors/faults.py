@@ -8,6 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from geom.arrays import Mask
 from measured.case import Channel, Test
 from measured.doubt import FORM
 
@@ -24,7 +25,7 @@ class Fault:
     kind: str
     test: str
     channel: str
-    bad: NDArray[np.bool_]
+    bad: Mask
     words: str
 
     @property
@@ -60,7 +61,7 @@ def longest_run(y: NDArray[np.float64]) -> tuple[int, int]:
     return int(edges[longest]) + 1, int(edges[longest + 1])
 
 
-def equal(difference: NDArray[np.float64]) -> NDArray[np.bool_]:
+def equal(difference: NDArray[np.float64]) -> Mask:
     """Readings that differ by no more than averaging equal ones rounds."""
     return np.abs(difference) < SAME_K
 

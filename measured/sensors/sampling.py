@@ -18,6 +18,7 @@ import numpy as np
 
 from geom.arrays import Array
 from lumped.integration.assembly import Pattern, assembly
+from lumped.integration.compiled import capacity_multipliers, hidden_states
 from lumped.integration.signals import Signals
 from lumped.model.multipliers import multipliers
 from lumped.model.network import Network, Row
@@ -86,11 +87,8 @@ class Modes:
         rate = np.maximum(rate.real, SLOWEST)
         shape, weight = lift @ V, np.linalg.solve(V, fall / C[warm, None]) / rate[:, None]
         at_once = np.eye(n)[:, bare]
-        return cls(
-            np.append(rate, np.full(bare.size, np.inf)),
-            np.hstack([shape, at_once]),
-            np.vstack([weight, inverse @ np.eye(n)[bare]]),
-        )
+        rate, inverse = np.append(rate, np.full(bare.size, np.inf)), inverse @ np.eye(n)[bare]
+        return cls(rate, np.hstack([shape, at_once]), np.vstack([weight, inverse]))
 
 
 def interpolation_error(x: Array) -> Array:
@@ -141,14 +139,13 @@ class _Felt:
     ) -> _Felt:
         """Linear about a machine at `level`, its films at the mean of their input factors."""
         every, n, acting = assembly(network), len(network.states), multipliers(network, None)
-        hidden = np.array(["#" in s for s in network.states], bool)
-        z = np.concatenate([np.where(hidden, 0.0, level), [around[b] for b in network.boundaries], [1.0]])
+        start = np.where(hidden_states(network), 0.0, level)
+        z = np.concatenate([start, [around[b] for b in network.boundaries], [1.0]])
         signals = Signals(inputs, time.size)
         factors = [np.asarray(signals.factor(p.name, separated(p.law))) for p in every.patterns]
         scale = np.array([acting.get(p.name, 1.0) * _value(p, z) for p in every.patterns])
         G = every.matrix(scale * np.array([float(np.mean(f)) for f in factors]))[:, :n]
-        groups = network.capacity_group or network.states
-        C = network.C * np.array([acting.get(f"capacity:{g}", 1.0) for g in groups])
+        C = network.C * capacity_multipliers(network, acting)
         moving = [e for e, f in enumerate(factors) if f.ndim]
         heat = np.zeros((n, len(moving)))
         for k, e in enumerate(moving):

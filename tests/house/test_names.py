@@ -40,7 +40,7 @@ ALLOWED = {  # file -> what its strings are, none of them a user's name for a pa
     "validation/revision/revise.py": "parameters that forms and shares name themselves, NAME^INPUT",
     "validation/effects/registry.py": "modules, and KIND@PLACE",
     "validation/effects/films/inner_air.py": "places of this effect, A|B",
-    "validation/effects/conduction/contact.py": "links by their own name, contact:A|B",
+    "validation/effects/build.py": "links and losses by their own name, contact:A|B",
     "validation/effects/streams/flow.py": "links by their own name, stream:NAME; places FLOW:TEST:50",
     "validation/effects/losses/copper_feedback.py": "sources by their own name, loss:NAME",
     "extras/rating/loss_grid.py": "columns of a loss map, NAME_W; sources by their own name, loss:NAME",

@@ -8,9 +8,8 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
-from geom.arrays import Array
+from geom.arrays import Array, Mask
 from geom.errors import NoSolution
 from lumped.model.multipliers import parameter_values
 from lumped.model.network import Network
@@ -76,7 +75,7 @@ class Fit:
         return np.asarray(np.sqrt(np.diag(self.covariance)))
 
     @property
-    def at_bound(self) -> NDArray[np.bool_]:
+    def at_bound(self) -> Mask:
         low, high = self.unknowns.bounds
         return (self.theta <= low + 1e-9) | (self.theta >= high - 1e-9)
 
@@ -185,12 +184,8 @@ class Iterate:
         self.draft, self.outdated, self.worth = draft or near, cache is not None and cache.outdated, worth
         self.centre = np.zeros_like(theta) if centre is None else centre
         self.low, self.high = unknowns.bounds
-        self.weight, self.damping, self.fresh, self.done = (
-            unknowns.sd**-2.0,
-            0.0,
-            not (near or (cache is not None and cache.stale)),
-            False,
-        )
+        self.fresh = not (near or (cache is not None and cache.stale))
+        self.weight, self.damping, self.done = unknowns.sd**-2.0, 0.0, False
         self.gain_ratio = 1.0
         self.theta = np.clip(theta, self.low, self.high)
         self.parts = self.begun(cache)
@@ -298,19 +293,8 @@ class Iterate:
         H, g = self.slope()
         inside = ~((self.theta <= self.low + 1e-9) & (g < 0) | (self.theta >= self.high - 1e-9) & (g > 0))
         slack = float(np.max(np.abs(g / np.sqrt(np.diag(H)))[inside], initial=0.0))
-        return Fit(
-            self.network,
-            self.unknowns,
-            self.theta,
-            H,
-            tuple(self.parts),
-            self.noise,
-            self.objective,
-            self.done or slack < STATIONARY,
-            slack,
-            self.error,
-            self.gain_ratio,
-        )
+        state = self.network, self.unknowns, self.theta, H, tuple(self.parts), self.noise, self.objective
+        return Fit(*state, self.done or slack < STATIONARY, slack, self.error, self.gain_ratio)
 
 
 _WHITENED: deque[tuple[Noise, ModelError, list[tuple[str, str, int]], list[Array], Any]] = deque(maxlen=8)
@@ -495,15 +479,6 @@ def with_model_error(
     fixed = {**values, **fit.values}
     error = model_error(fit.network, tests, fixed, doubt, steps_like=steps_like)
     noise = fit_noise(InnerProduct(fit.parts, fit.noise, error).explained(fit.parts, error))
-    return minimise(
-        fit.network,
-        tests,
-        fit.unknowns,
-        fit.theta,
-        noise,
-        fixed,
-        iterations,
-        CachedSegments(fit.parts, nearby=False, stale=iterations > 0),
-        draft,
-        error=error,
-    )
+    cache = CachedSegments(fit.parts, nearby=False, stale=iterations > 0)
+    model = fit.network, tests, fit.unknowns
+    return minimise(*model, fit.theta, noise, fixed, iterations, cache, draft, error=error)

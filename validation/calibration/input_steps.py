@@ -6,9 +6,8 @@ from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
-from geom.arrays import Array
+from geom.arrays import Array, Ints
 from measured.case import Recorded, Test
 from measured.doubt import USUAL
 
@@ -28,7 +27,7 @@ class InputStep:
     hidden : an input of which nothing shows;  share is then what it may have been more, in its unit
     """
 
-    row: NDArray[np.int64]
+    row: Ints
     share: Array
     hidden: str = ""
 
@@ -126,9 +125,7 @@ def with_more(test: Test, step: InputStep) -> Test:
     return _finer(test, step.row, at, between)
 
 
-def _finer(
-    test: Test, row: NDArray[np.int64], at: tuple[Array, Array], between: Mapping[str, tuple[Array, Array]]
-) -> Test:
+def _finer(test: Test, row: Ints, at: tuple[Array, Array], between: Mapping[str, tuple[Array, Array]]) -> Test:
     """The test with two more instants (s) behind some rows, and what its inputs are there."""
     time, inputs = recorded_inputs(test)
 

@@ -25,7 +25,7 @@ from measured.sensors.operators import lag, setting
 from validation.calibration.input_steps import InputStep, input_steps, recorded_inputs, with_more, with_steps
 from validation.comparison.linearisation import Segment, largest_rise, segments
 from validation.comparison.predict import heat_model, record
-from validation.effects.build import Shaped, copy_link, copy_source, exchange, heat
+from validation.effects.build import Shaped, copy_element, exchange, heat
 from validation.parameters.model_form import EXACT_LOSSES, KNOTS, REFERENCE_RISE_K, Table, is_film
 from validation.parameters.reference import mean_factor
 from validation.threads import run_by_run, side_by_side
@@ -72,11 +72,11 @@ def with_doubts(network: Network, doubt: Doubt, tests: Sequence[Test] = ()) -> t
     new = [*_each_link(network, doubt), *_each_loss(network, doubt), *_each_capacity(network, doubt)]
     for loss, square in _under_load(network, tests):
         name = f"{loss.name}*{'*'.join(square.inputs)}"
-        network = copy_source(network, loss, name, Shaped(loss.law, square, also_reads=square.inputs))
+        network = copy_element(network, loss, name, Shaped(loss.law, square, also_reads=square.inputs))
         new.append(_amplitude(f"doubt:{name}", name, doubt["load"], "1"))
     for link in [x for x in network.links if _constant_film(network, x)]:
         name = f"{link.name}^dT?"
-        network = copy_link(network, link, name, WithTemperature(link.law, LOGARITHM))
+        network = copy_element(network, link, name, WithTemperature(link.law, LOGARITHM))
         new.append(_amplitude(f"doubt:{name}", name, doubt["film exponent"], "1"))
     for a, b, G in pairs:
         name = f"beside:{a}|{b}"

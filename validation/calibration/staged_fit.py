@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from fnmatch import fnmatchcase
 
 import numpy as np
 
+from geom.arrays import Numbers
 from geom.errors import InputError
 from lumped.model.multipliers import parameter_values
 from lumped.model.network import Network, Parameter
@@ -38,7 +39,7 @@ class Search:
 
     starts: int = 1
     seed: int = 0
-    begin: Mapping[str, float] = field(default_factory=dict)
+    begin: Numbers = field(default_factory=dict)
     keep: Keep = no_memory
 
 
@@ -68,11 +69,7 @@ def belongs(name: str, pattern: str) -> bool:
 
 
 def staged_fit(
-    case: Case,
-    tests: Sequence[Test],
-    start: Mapping[str, float],
-    search: Search | None = None,
-    progress: Progress = no_progress,
+    case: Case, tests: Sequence[Test], start: Numbers, search: Search | None = None, progress: Progress = no_progress
 ) -> list[Fit]:
     """The case's free parameters fitted to some tests, stage after stage; the fit of each."""
     network, unknowns = working(case)
@@ -100,12 +97,7 @@ def measured_in(p: Parameter, tests: Sequence[Test]) -> bool:
 
 
 def best_start(
-    network: Network,
-    tests: Sequence[Test],
-    unknowns: Unknowns,
-    values: Mapping[str, float],
-    search: Search,
-    progress: Progress,
+    network: Network, tests: Sequence[Test], unknowns: Unknowns, values: Numbers, search: Search, progress: Progress
 ) -> dict[str, float]:
     """Rough fits from several points of the prior; the values of the best."""
     rng, fixed = np.random.default_rng(search.seed), parameter_values(network, values)

@@ -16,6 +16,7 @@ from lumped.model.network import Network
 from measured.case import Case, Channel, Test, seconds_read
 from measured.doubt import USUAL, Doubt
 from measured.sensors.operators import start_target
+from validation.comparison.linearisation import largest_rise
 from validation.comparison.predict import predict
 from validation.comparison.uncertainty import Uncertainty, uncertainties
 from validation.parameters.unknowns import hidden_starts, measured, standing, start_name
@@ -80,19 +81,17 @@ class TestError:
         return _fitted(self.channels)
 
     @property
+    def summary(self) -> dict:
+        """Its error over all channels, for a document."""
+        return {"name": self.name, "role": self.role, "rmse_K": self.rmse_K, "fitted_rmse_K": self.fitted_rmse_K}
+
+    @property
     def over(self) -> int:
         """How many sensors are off by more than is uncertain."""
         return sum(c.verdict == "over" for c in self.channels)
 
     def document(self) -> dict:
-        rows = [c.document() for c in self.channels]
-        return {
-            "name": self.name,
-            "role": self.role,
-            "rmse_K": self.rmse_K,
-            "fitted_rmse_K": self.fitted_rmse_K,
-            "channels": rows,
-        }
+        return {**self.summary, "channels": [c.document() for c in self.channels]}
 
 
 @dataclass(frozen=True)
@@ -164,6 +163,7 @@ class Comparison(TableResult):
         return all(c.verdict == "within" for t in self.tests for c in t.channels)
 
     def document(self) -> dict:
+        origin = {n: "declared" if i.declared else "guessed" for n, i in self.identities.items()}
         return {
             "case": self.case,
             "model": {"revision": self.revision, "effects": list(self.effects)},
@@ -173,14 +173,8 @@ class Comparison(TableResult):
             "floor_K": self.floor_K,
             "words": self.words,
             "roles": [
-                {
-                    "name": name,
-                    "role": i.role,
-                    "turns": i.turns,
-                    "known": "declared" if i.declared else "guessed",
-                    "evidence": i.why,
-                }
-                for name, i in self.identities.items()
+                {"name": n, "role": i.role, "turns": i.turns, "known": origin[n], "evidence": i.why}
+                for n, i in self.identities.items()
             ],
         }
 
@@ -302,25 +296,10 @@ def channel_error(channel: Channel, time: np.ndarray, predicted: np.ndarray) -> 
     """The error of one sensor.  time : (n_time,) s;  predicted : (n_time,) degC"""
     read = np.isfinite(channel.y)
     e = channel.y[read] - predicted[read]
-    rmse, rise = float(np.sqrt(np.mean(e**2))), rise_K(channel)
+    rmse, rise = float(np.sqrt(np.mean(e**2))), largest_rise(channel)
     percent = 100.0 * rmse / rise if rise > 0 else float("inf")
-    return ChannelError(
-        channel.name,
-        channel.place,
-        int(read.sum()),
-        seconds_read(time[read]),
-        rmse,
-        float(e.mean()),
-        float(np.abs(e).max()),
-        channel.sigma_K,
-        percent,
-    )
-
-
-def rise_K(channel: Channel) -> float:
-    """How far a sensor went from its first reading (K); 0 where it was never read."""
-    finite = channel.y[np.isfinite(channel.y)]
-    return float(np.max(np.abs(finite - finite[0]))) if finite.size else 0.0
+    what = channel.name, channel.place, int(read.sum()), seconds_read(time[read])
+    return ChannelError(*what, rmse, float(e.mean()), float(np.abs(e).max()), channel.sigma_K, percent)
 
 
 test_error.__test__ = False  # type: ignore[attr-defined]

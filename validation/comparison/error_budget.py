@@ -83,11 +83,8 @@ def _of_run(
         return ErrorBudget(tuple(PlaceError(name, None, None, late[name]) for name in rows))
     around = np.min([np.broadcast_to(u, run.time.shape) for u in run.boundaries.values()], axis=0)
     warm = float(np.abs(course.y - around[:, None]).max()) / rated.rise_K
-    return ErrorBudget(
-        tuple(
-            PlaceError(name, warm * rated.mesh_K[name], warm * rated.condensation_K[name], late[name]) for name in rows
-        )
-    )
+    fixed = {name: (warm * rated.mesh_K[name], warm * rated.condensation_K[name]) for name in rows}
+    return ErrorBudget(tuple(PlaceError(name, *fixed[name], late[name]) for name in rows))
 
 
 def documents(budgets: Mapping[str, ErrorBudget]) -> dict[str, Any]:

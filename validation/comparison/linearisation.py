@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
-from geom.arrays import Array
+from geom.arrays import Array, Numbers
 from lumped.integration.compiled import FIT
 from lumped.model.network import Network, Parameter
 from lumped.model.once import once
@@ -50,7 +50,7 @@ class Segment:
 def segments(
     network: Network,
     tests: Sequence[Test],
-    values: Mapping[str, float],
+    values: Numbers,
     tangents: Sequence[Parameter] = (),
     instants: int = INSTANTS,
     numbers: int = NUMBERS,
@@ -68,12 +68,7 @@ def segments(
 
 
 def _of_test(
-    network: Network,
-    test: Test,
-    values: Mapping[str, float],
-    tangents: Sequence[Parameter],
-    instants: int,
-    numbers: int,
+    network: Network, test: Test, values: Numbers, tangents: Sequence[Parameter], instants: int, numbers: int
 ) -> list[Segment]:
     n, length = len(test.time), stretch(len(test.channels), len(tangents), numbers)
     watch, start = Watch(network, test, values, tangents, FIT), groups(n, instants)

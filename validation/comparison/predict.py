@@ -11,7 +11,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from geom.arrays import Array
+from geom.arrays import Array, Numbers
 from lumped.integration.compiled import READINGS, Precision
 from lumped.integration.simulate import Record, Stand, simulate
 from lumped.model.network import Network, Parameter
@@ -40,7 +40,7 @@ def thermal(network: Network) -> Network:
     return replace(network, parameters=tuple(p for p in network.parameters if operators.head(p) == "thermal"))
 
 
-def heat_model(network: Network, values: Mapping[str, float]) -> tuple[Network, dict[str, float]]:
+def heat_model(network: Network, values: Numbers) -> tuple[Network, dict[str, float]]:
     """That network, and those of the values that act on it."""
     bare = thermal(network)
     names = {p.name for p in bare.parameters}
@@ -48,22 +48,18 @@ def heat_model(network: Network, values: Mapping[str, float]) -> tuple[Network, 
 
 
 def predict(
-    network: Network,
-    test: Test,
-    values: Mapping[str, float],
-    tangents: Sequence[Parameter] = (),
-    precision: Precision = READINGS,
+    network: Network, test: Test, values: Numbers, tangents: Sequence[Parameter] = (), precision: Precision = READINGS
 ) -> Prediction:
     """Readings of every channel of a test and their derivatives with respect to `tangents`."""
     return Watch(network, test, values, tangents, precision).until(len(test.time))
 
 
-def record(test: Test, shift: Mapping[str, float]) -> Record:
+def record(test: Test, shift: Numbers) -> Record:
     """The test's inputs, its time, and that it is this test; offsets of boundaries and start applied."""
     return stretch_of_record(test, shift, slice(0, len(test.time)))
 
 
-def stretch_of_record(test: Test, shift: Mapping[str, float], some: slice) -> Record:
+def stretch_of_record(test: Test, shift: Numbers, some: slice) -> Record:
     """The samples of the record from some.start to some.stop, beginning as the whole does."""
     air = {n: np.broadcast_to(np.asarray(u, float), test.time.shape)[some] for n, u in test.boundaries.items()}
     boundaries = {n: u + sum(a for target, a in shift.items() if moves(target, n, test)) for n, u in air.items()}
@@ -95,8 +91,8 @@ class Course:
         self,
         network: Network,
         test: Test,
-        heat: Mapping[str, float],
-        shift: Mapping[str, float],
+        heat: Numbers,
+        shift: Numbers,
         tangents: Sequence[Parameter] = (),
         shifts: Sequence[str | None] = (),
         precision: Precision = READINGS,
@@ -137,16 +133,8 @@ class Course:
     def _simulated(self, some: slice) -> tuple[Array, Array, Stand]:
         part, rows = stretch_of_record(self.test, self.shift, some), [c.row for c in self.test.channels]
         # a step at every sample: then a test cut in two, or looked at in stretches, is the same to the bit
-        run = simulate(
-            self.network,
-            part,
-            self.heat,
-            rows,
-            self.tangents,
-            begin=self.end,
-            shifts=self.shifts,
-            precision=self.precision,
-        )
+        of = self.network, part, self.heat, rows, self.tangents
+        run = simulate(*of, begin=self.end, shifts=self.shifts, precision=self.precision)
         return run.y, np.empty((*run.y.shape, 0)) if run.dy is None else run.dy, run.end
 
 
@@ -160,7 +148,7 @@ class Watch:
         self,
         network: Network,
         test: Test,
-        values: Mapping[str, float],
+        values: Numbers,
         tangents: Sequence[Parameter] = (),
         precision: Precision = READINGS,
     ) -> None:
@@ -209,7 +197,7 @@ class Watch:
         low, high = np.searchsorted(time, [time[some.start] - self.late_s, time[some.stop - 1] + self.late_s])
         return slice(max(int(low) - MARGIN, 0), min(int(high) + MARGIN, time.size))
 
-    def _late(self, T: Array, some: slice, now: Mapping[str, float]) -> Array:
+    def _late(self, T: Array, some: slice, now: Numbers) -> Array:
         """Temperatures as the samples have them, out of those around: means over a step, a late recorder's clock."""
         delay, time = now.get(f"delay:{self.test.name}", 0.0), self.test.time
         T = softened(T, self.spread)

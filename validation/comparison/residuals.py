@@ -68,8 +68,7 @@ def ljung_box(r: Array) -> float:
     Source: Ljung and Box 1978, Biometrika 65, 297.
     """
     n, lags = r.size, np.arange(1, min(LAGS, r.size // 4) + 1)
-    e = r - np.mean(r)
-    rho = np.array([e[k:] @ e[:-k] for k in lags]) / max(float(e @ e), 1e-300)
+    rho = autocorrelation(r, lags.size)[1:]
     Q = n * (n + 2) * float(np.sum(rho**2 / (n - lags)))
     return float(gammaincc(lags.size / 2, Q / 2))
 

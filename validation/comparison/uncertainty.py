@@ -22,7 +22,7 @@ from lumped.model.network import Network
 from measured.case import Test
 from measured.doubt import USUAL, Doubt
 from validation.comparison.moved_inputs import moved_boundaries, moved_inputs
-from validation.comparison.predict import predict, record, thermal
+from validation.comparison.predict import heat_model, predict, record
 
 COVERAGE = 2.0  # standard uncertainties: 95 %
 RULE = f"within: rms up to {COVERAGE:g} times the uncertainty of reading, inputs and arithmetic"
@@ -108,8 +108,7 @@ def _contributions(
 
 def _time_steps(network: Network, test: Test, values: Mapping[str, float]) -> dict[str, float]:
     """Error of the time steps at every channel (K)."""
-    bare = thermal(network)
-    heat = {p.name: values[p.name] for p in bare.parameters if p.name in values}
+    bare, heat = heat_model(network, values)
     late = simulate(bare, record(test, {}), heat, [c.row for c in test.channels]).time_error_K
     return dict(zip((c.name for c in test.channels), late.tolist(), strict=True))
 

@@ -9,10 +9,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from geom.errors import InputError
-from lumped.model.network import Link, Network, Source
+from lumped.model.network import Network
 from lumped.transfer.laws import Array, Inputs
-from validation.effects.base import ReadingEffect, with_parameter
-from validation.effects.build import Shaped, copy_link, copy_source
+from validation.effects.base import NOTHING, Interval, ReadingEffect, with_parameter
+from validation.effects.build import Shaped, copy_element
 
 KIND = "law"
 PLACE = re.compile(r"(.+)\|(.+)>(\d+(?:\.\d+)?(?:e[+-]?\d+)?)")
@@ -40,7 +40,6 @@ class Above(ReadingEffect):
 
     kind = KIND
     title = "a declared law is off at high values of an input"
-    unit = "1"
     source = "definition: a map measured on another machine, a constant where the law bends"
     isolating_test = "two tests at constant load, one below and one above that value"
     typical = (-0.5, 0.5)
@@ -69,9 +68,7 @@ class Above(ReadingEffect):
     def inputs(self) -> tuple[str, ...]:
         return (self.parts()[1],)
 
-    def words(
-        self, a: float, network: Network, values: Mapping[str, float], ci95: tuple[float, float] = (0.0, 0.0)
-    ) -> str:
+    def words(self, a: float, network: Network, values: Mapping[str, float], ci95: Interval = NOTHING) -> str:
         """ "the declared loss stator is 40 % too high above current_A 150"."""
         target, name, level = self.parts()
         side = "too low" if a > 0 else "too high"
@@ -80,14 +77,10 @@ class Above(ReadingEffect):
 
     def extend(self, network: Network) -> Network:
         target, name, level = self.parts()
-        items: list[Link | Source] = [*network.links, *network.sources]
-        followed = [x for x in items if x.name == target and not x.origin]
-        if not followed:
-            names = ", ".join(x.name for x in items if not x.origin)
+        items = [x for x in network.elements if not x.origin]
+        followed = next((x for x in items if x.name == target), None)
+        if followed is None:
+            names = ", ".join(x.name for x in items)
             raise InputError(f"no loss or link '{target}'", f"effect '{self.name}'", f"one of {names}")
-        law = Shaped(followed[0].law, Ramp(name, level), followed[0].law.temperature, (name,))
-        if isinstance(followed[0], Link):
-            network = copy_link(network, followed[0], self.name, law)
-        else:
-            network = copy_source(network, followed[0], self.name, law)
+        network = copy_element(network, followed, self.name, Shaped.of(followed.law, Ramp(name, level), name))
         return with_parameter(network, self.parameter(self.name))

@@ -7,9 +7,15 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
 from typing import ClassVar, Literal
 
-from lumped.model.network import Network, Parameter
+from lumped.model.network import Link, Network, Parameter
 from lumped.model.quantities import INPUTS
-from lumped.transfer.laws import CLOCK
+from lumped.transfer.laws import CLOCK, Fixed, InputPower, Law
+
+Interval = tuple[float, float]
+NOTHING: Interval = (0.0, 0.0)
+# In which reference values are stated
+UNITS = {"speed": "rpm", "vehicle_speed": "m/s", "current": "A", "torque": "Nm", "power": "W", "voltage": "V"}
+UNITS |= {"frequency": "Hz", "air_flow": "m3/h", "water_flow": "l/min", "share": "%", "flow_share": "%"}
 
 
 @dataclass(frozen=True)
@@ -37,7 +43,8 @@ class Effect(ABC):
     """Physics that a network may lack, at one place. With its parameter at neutral it changes nothing.
 
     kind, title : short name and words;  place : where it sits;  sits : where it may, in words
-    unit, sign, prior_sd, low, high : of its one parameter; sign is what physics allows (0: both)
+    unit, sign, prior_sd, low, high : of its one parameter, a share where it has no unit; sign is what physics allows
+        (0: both)
     at : speed, current, ... at which the parameter is what the effect amounts to ("" : everywhere)
     typical : usual magnitude in `unit`
     confused_with : kinds that leave a similar trace;  isolating_test : the test that sets it apart
@@ -55,7 +62,7 @@ class Effect(ABC):
     kind: ClassVar[str]
     title: ClassVar[str]
     sits: ClassVar[str] = "a place that its own file names"
-    unit: ClassVar[str]
+    unit: ClassVar[str] = "1"
     at: ClassVar[str] = ""
     source: ClassVar[str]
     isolating_test: ClassVar[str]
@@ -132,6 +139,43 @@ class Effect(ABC):
         )
 
 
+class PowerLaw(Effect):
+    """A loss or film that goes with powers of what is recorded; a is what it is where each has its reference value.
+
+    follows : (quantity, reference value, exponent) of each; none: it is constant
+    """
+
+    follows: ClassVar[tuple[tuple[str, float, float], ...]] = ()
+
+    def __init_subclass__(cls) -> None:
+        """It needs what it follows, and is stated at the reference values unless it says at more than these."""
+        if "follows" in vars(cls):
+            cls.needs = tuple(quantity for quantity, _, _ in cls.follows)
+            if "at" not in vars(cls):
+                cls.at = " and ".join(f"{value:g} {UNITS[quantity]}" for quantity, value, _ in cls.follows)
+
+    def law(self, network: Network) -> Law:
+        """Of a coefficient of 1 (W, W/m2/K, or W/K at a bare node) at the reference values."""
+        factors = tuple((network.signal(quantity), value, n) for quantity, value, n in self.follows)
+        return InputPower(1.0, factors) if factors else Fixed(1.0)
+
+
+class WeakLinks(Effect):
+    """Links that conduct or carry less than assumed: g = g0 (1 + a), low <= a <= 0."""
+
+    sign = -1
+    low = -0.95
+    high = 0.0
+    mapping = "relative"
+
+    @abstractmethod
+    def links(self, network: Network) -> list[Link]:
+        """What it weakens."""
+
+    def extend(self, network: Network) -> Network:
+        return with_parameter(network, self.parameter(*(link.name for link in self.links(network))))
+
+
 class ReadingEffect(Effect):
     """An effect whose place only readings can tell, such as the level of an input: the catalogue has none of it."""
 
@@ -146,9 +190,7 @@ class ReadingEffect(Effect):
         """What it follows."""
 
     @abstractmethod
-    def words(
-        self, a: float, network: Network, values: Mapping[str, float], ci95: tuple[float, float] = (0.0, 0.0)
-    ) -> str:
+    def words(self, a: float, network: Network, values: Mapping[str, float], ci95: Interval = NOTHING) -> str:
         """What an amplitude means, beside what the network has there at the values of its parameters."""
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -22,6 +22,11 @@ class Shaped(Wrapped):
     temperature: TemperatureLaw = CONSTANT
     also_reads: tuple[str, ...] = ()
     by_instant: bool = False
+
+    @classmethod
+    def of(cls, law: Law, shape: Callable[[Inputs], Array | float], *inputs: str) -> Shaped:
+        """A law times a shape that reads some more inputs, with the law's own dependence on temperature."""
+        return cls(law, shape, law.temperature, inputs)
 
     @property
     def reads(self) -> tuple[str, ...]:  # type: ignore[override]
@@ -64,6 +69,11 @@ def exchange(network: Network, name: str, a: str, b: str, law: Law) -> Link:
     rows, cols = np.meshgrid(index[state], index, indexing="ij")
     vals = np.outer(weights[state], weights)
     return Link(name, "link", (a, b), rows.ravel(), cols.ravel(), vals.ravel(), law, ra, rb, name)
+
+
+def label(element: Link | Source) -> str:
+    """Its name without what it is: of "contact:core|housing" what follows the first colon."""
+    return element.name.split(":", 1)[-1]
 
 
 def links_between(network: Network, a: str, b: str) -> list[Link]:
@@ -111,17 +121,15 @@ def follow(parameters: tuple[Parameter, ...], original: str, copy: str) -> tuple
     return tuple(replace(p, targets=p.targets + m) if m else p for p, m in zip(parameters, more, strict=True))
 
 
-def copy_link(network: Network, link: Link, name: str, law: Law) -> Network:
-    """The network with a second link of the same pattern that follows the original's multipliers."""
-    parameters = follow(network.parameters, link.name, name)
-    return replace(
-        network, links=(*network.links, replace(link, name=name, law=law, origin=name)), parameters=parameters
-    )
+def copy_element(network: Network, element: Link | Source, name: str, law: Law) -> Network:
+    """The network with a second link or source of the same pattern that follows the original's multipliers."""
+    copy = replace(element, name=name, law=law, origin=name)
+    larger = network.extended(links=[copy]) if isinstance(copy, Link) else network.extended(sources=[copy])
+    return replace(larger, parameters=follow(network.parameters, element.name, name))
 
 
-def copy_source(network: Network, source: Source, name: str, law: Law) -> Network:
-    """The network with a second source of the same pattern that follows the original's multipliers."""
-    parameters = follow(network.parameters, source.name, name)
-    return replace(
-        network, sources=(*network.sources, replace(source, name=name, law=law, origin=name)), parameters=parameters
-    )
+def copy_elements(network: Network, copies: Mapping[str, tuple[Link | Source, Law]]) -> Network:
+    """The network with a copy of each of some links and sources.  copies : name of the copy -> original, its own law"""
+    for name, (element, law) in copies.items():
+        network = copy_element(network, element, name, law)
+    return network

@@ -11,27 +11,11 @@ from lumped.transfer.laws import CLOCK, Law
 from measured.doubt import USUAL
 from measured.sensors.operators import of_measurement
 from validation.effects.base import Effect, Scene, with_parameter
-from validation.effects.build import Shaped, copy_link, copy_source
+from validation.effects.build import Shaped, copy_elements
 from validation.effects.time_window import ALIKE, IN, Event, TimeWindow, event, odd_tests
 
-SAME = (
-    "kind",
-    "title",
-    "unit",
-    "at",
-    "source",
-    "isolating_test",
-    "typical",
-    "sign",
-    "prior_sd",
-    "low",
-    "high",
-    "neutral",
-    "confused_with",
-    "needs",
-    "fault",
-    "empirical",
-)
+SAME = ["kind", "title", "unit", "at", "source", "isolating_test", "typical", "confused_with", "needs"]
+SAME += ["sign", "low", "high", "neutral", "fault", "empirical"]
 
 
 @dataclass(frozen=True)
@@ -114,24 +98,20 @@ class During(Effect):
         return InputError(f"'{self.base.name}' cannot hold for a while", f"effect '{self.name}'", right)
 
     def _law(self, law: Law, factor: float = 1.0) -> Law:
-        return Shaped(law, TimeWindow(self.condition, factor), law.temperature, (CLOCK,))
+        return Shaped.of(law, TimeWindow(self.condition, factor), CLOCK)
 
     def _conditional(self, network: Network, larger: Network, parameter: Parameter) -> Network:
         """What the other effect adds, times the condition."""
         links, sources = larger.links[len(network.links) :], larger.sources[len(network.sources) :]
-        items: list[Link | Source] = [*links, *sources]
-        new = {x.name: f"{x.name}{IN}{self.condition}" for x in items}
+        names = [*(x.name for x in links), *(x.name for x in sources)]
+        new = {name: f"{name}{IN}{self.condition}" for name in names}
         parameters = tuple(
             replace(p, targets=tuple((new.get(t, t), e) for t, e in p.targets))
-            if any(t in new for t, _ in p.targets)
-            else p
             for p in (*larger.parameters[:-1], replace(parameter, name=self.name))
         )
-        return replace(
-            network,
-            parameters=parameters,
-            links=(*network.links, *(replace(x, name=new[x.name], law=self._law(x.law)) for x in links)),
-            sources=(*network.sources, *(replace(x, name=new[x.name], law=self._law(x.law)) for x in sources)),
+        return replace(network, parameters=parameters).extended(
+            links=[replace(x, name=new[x.name], law=self._law(x.law)) for x in links],
+            sources=[replace(x, name=new[x.name], law=self._law(x.law)) for x in sources],
         )
 
     def _copied(self, network: Network, parameter: Parameter) -> Network:
@@ -140,20 +120,15 @@ class During(Effect):
         Copies that others of its kind have brought in are not copied again: with n of them there would be 2^n, for the
         product of two changes of one flow in one test.
         """
-        links, sources = {x.name: x for x in network.links}, {x.name: x for x in network.sources}
-        names = []
+        items = {x.name: x for x in reversed(network.elements)}
+        copies: dict[str, tuple[Link | Source, Law]] = {}
         for target, exponent in parameter.targets:
-            if target not in links and target not in sources:
+            if target not in items:
                 raise self.lasting("a film, a flow or a loss")
-            if gated((links if target in links else sources)[target].law):
-                continue
-            names.append(f"{self.name}:{target}")
-            if target in links:
-                network = copy_link(network, links[target], names[-1], self._law(links[target].law, exponent))
-            else:
-                network = copy_source(network, sources[target], names[-1], self._law(sources[target].law, exponent))
-        amplitude = replace(parameter, name=self.name, targets=tuple((n, 1.0) for n in names), mapping="amplitude")
-        return with_parameter(network, replace(amplitude, value=0.0, neutral=0.0))
+            if not gated(items[target].law):
+                copies[f"{self.name}:{target}"] = items[target], self._law(items[target].law, exponent)
+        amplitude = replace(parameter, name=self.name, targets=tuple((n, 1.0) for n in copies), mapping="amplitude")
+        return with_parameter(copy_elements(network, copies), replace(amplitude, value=0.0, neutral=0.0))
 
 
 def gated(law: Law) -> bool:

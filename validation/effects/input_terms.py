@@ -10,13 +10,14 @@ from typing import ClassVar
 
 import numpy as np
 
+from geom.arrays import Numbers
 from geom.errors import InputError
 from lumped.model.multipliers import multipliers, parameter_values
 from lumped.model.network import Link, Network, Source
 from lumped.transfer.laws import Array, InputPower, Inputs, Law
 from lumped.transfer.ranges import within_silence
 from measured.sensors.operators import head
-from validation.effects.base import Effect, ReadingEffect, place_words, with_parameter
+from validation.effects.base import NOTHING, Effect, Interval, ReadingEffect, place_words, with_parameter
 from validation.effects.build import Shaped, conductance_scale, exchange, heat, links_between, power_scale
 
 PLACE = re.compile(r"([^|]+)(?:\|([^|]+))?\|([^|]+)")
@@ -24,8 +25,6 @@ NUMBER = r"(\d+(?:\.\d+)?(?:e[+-]?\d+)?)"
 FACTOR = re.compile(rf"([^|*^>]+?)(?:>{NUMBER})?(?:\^{NUMBER})? at {NUMBER}")
 ZERO = np.zeros(1)
 STRAIGHT = 0.05  # an exponent this close to one is a straight line: nobody sees the difference
-Interval = tuple[float, float]
-NOTHING: Interval = (0.0, 0.0)
 Factor = tuple[str, float, float, float]  # input, where it sets in, its largest value, exponent
 
 
@@ -117,14 +116,14 @@ class InputTerm(ReadingEffect):
         return " and ".join(f"{name} {level:g}" for name, level in self.most.items())
 
     @abstractmethod
-    def law_words(self, a: float, network: Network, values: Mapping[str, float], ci95: Interval) -> str:
+    def law_words(self, a: float, network: Network, values: Numbers, ci95: Interval) -> str:
         """ "stator to coolant: 56 W/K at rest, 112 at speed_rpm 4000 [100, 125]", and what is not a straight line."""
 
-    def words(self, a: float, network: Network, values: Mapping[str, float], ci95: Interval = NOTHING) -> str:
+    def words(self, a: float, network: Network, values: Numbers, ci95: Interval = NOTHING) -> str:
         """The same, of something missing."""
         return f"missing: {self.law_words(a, network, values, ci95)}"
 
-    def sentence(self, subject: str, rest: float, most: float, values: Mapping[str, float], width: Interval) -> str:
+    def sentence(self, subject: str, rest: float, most: float, values: Numbers, width: Interval) -> str:
         """What it is at rest and at most, how sure that is, and the shape between them.  width : interval, most = 0"""
         each = []
         for name, begin, _, p in self.parts()[1]:
@@ -149,7 +148,7 @@ class InputLoss(InputTerm):
     isolating_test = "that input alone, at two levels"
     confused_with = ("loss.constant", "loss.factor")
 
-    def law_words(self, a: float, network: Network, values: Mapping[str, float], ci95: Interval) -> str:
+    def law_words(self, a: float, network: Network, values: Numbers, ci95: Interval) -> str:
         """ "a loss at stator that no declared one gives: 0 W at rest, 230 at speed_rpm 4000 [200, 260]"."""
         names = {f"{self.name}^{name}" for name in self.inputs}
         exponents = [x for x in network.sources if x.name in names]
@@ -176,7 +175,7 @@ class InputConductance(InputTerm):
     isolating_test = "cool down at two levels of that input without load"
     confused_with = ("flow", "coupling")
 
-    def law_words(self, a: float, network: Network, values: Mapping[str, float], ci95: Interval) -> str:
+    def law_words(self, a: float, network: Network, values: Numbers, ci95: Interval) -> str:
         """What the place gives in all, with what is declared there."""
         one, other = self.parts()[0]
         others = [x for x in links_between(network, one, other) if x.name != self.name]
@@ -201,9 +200,7 @@ def _width(a: float, ci95: Interval) -> Interval:
     return (ci95[0] - a, ci95[1] - a) if ci95[1] > ci95[0] else NOTHING
 
 
-def _total(
-    elements: Iterable[Link | Source], network: Network, values: Mapping[str, float], now: Mapping[str, float]
-) -> float:
+def _total(elements: Iterable[Link | Source], network: Network, values: Numbers, now: Numbers) -> float:
     """Conductance (W/K) or heat (W) of links or losses where some inputs have a value and all others are zero."""
     bare = replace(network, parameters=tuple(p for p in network.parameters if head(p) == "thermal"))
     times = multipliers(bare, parameter_values(bare, values))
@@ -217,9 +214,7 @@ def _total(
         )
 
 
-def law_words(
-    effects: Iterable[Effect], network: Network, values: Mapping[str, float], ci95: Mapping[str, Interval]
-) -> list[str]:
+def law_words(effects: Iterable[Effect], network: Network, values: Numbers, ci95: Mapping[str, Interval]) -> list[str]:
     """What the terms that follow inputs came to in a fit, with their intervals, as they are told everywhere."""
     return [
         e.law_words(values[e.name], network, values, ci95.get(e.name, NOTHING))

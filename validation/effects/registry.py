@@ -83,11 +83,8 @@ def _checked_condition(condition: str, scene: Scene | None, name: str) -> str:
         window = event(condition)
         for test in window.tests if window else odd_tests(condition) or (condition,):
             if test not in scene.tests:
-                raise InputError(
-                    f"unknown test or event '{test}'",
-                    f"effect '{name}'",
-                    f"one of {', '.join(scene.tests)}, or an event as `diagnose` names it",
-                )
+                right = f"one of {', '.join(scene.tests)}, or an event as `diagnose` names it"
+                raise InputError(f"unknown test or event '{test}'", f"effect '{name}'", right)
     return condition
 
 

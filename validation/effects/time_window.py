@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
-from itertools import pairwise
+from itertools import pairwise, product
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -62,12 +62,8 @@ class Event:
 
     def overlap(self, other: Event) -> float:
         """Time in both over time in either."""
-        both = sum(
-            max(0.0, min(y, d) - max(x, c))
-            for t in self.spans
-            for x, y in self.spans[t]
-            for c, d in other.spans.get(t, ())
-        )
+        pairs = (product(spans, other.spans.get(test, ())) for test, spans in self.spans.items())
+        both = sum(max(0.0, min(b, d) - max(a, c)) for each in pairs for (a, b), (c, d) in each)
         every = sum(y - x for e in (self, other) for x, y in e.every)
         return both / max(every - both, 1e-12)
 
@@ -104,20 +100,15 @@ def checked(occurrence: Event, test: str, first: float, last: float, where: str)
     """Spans run forwards, lie inside the record and do not overlap."""
     for begin, end in occurrence.spans[test]:
         if not begin < end:
-            raise InputError(
-                f"an event ends at {end:g} s, not after it begins at {begin:g} s", where, "begin, then end"
-            )
+            what = f"an event ends at {end:g} s, not after it begins at {begin:g} s"
+            raise InputError(what, where, "begin, then end")
         if begin < first or end > last:
-            raise InputError(
-                f"an event from {begin:g} to {end:g} s is outside the record", where, f"{first:g} to {last:g} s"
-            )
+            what = f"an event from {begin:g} to {end:g} s is outside the record"
+            raise InputError(what, where, f"{first:g} to {last:g} s")
     for (a, b), (c, d) in pairwise(occurrence.spans[test]):
         if c < b:
-            raise InputError(
-                f"an event overlaps itself: {a:g} to {b:g} s and {c:g} to {d:g} s",
-                where,
-                "spans that follow one another, or two events",
-            )
+            what = f"an event overlaps itself: {a:g} to {b:g} s and {c:g} to {d:g} s"
+            raise InputError(what, where, "spans that follow one another, or two events")
 
 
 def share(time: Array, spans: Sequence[Span]) -> Array:

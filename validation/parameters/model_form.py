@@ -29,7 +29,8 @@ from lumped.transfer.laws import (
 )
 from lumped.transfer.ranges import within_silence
 from measured.doubt import USUAL, Doubt
-from validation.effects.build import copy_link, copy_source
+from validation.effects.base import with_parameter
+from validation.effects.build import copy_elements
 
 REFERENCE_RISE_K = 40.0  # a usual rise: there an exponent moves no coefficient
 REFERENCE_DEGC = 40.0  # a usual temperature of a bearing
@@ -160,57 +161,38 @@ def _with_input(
     doubt: Doubt,
 ) -> Network:
     """The exponent of one input in all laws of a parameter that follow it."""
-    new = []
-
-    def exponent_error(x: Link | Source) -> ExponentError | None:
-        if name not in x.law.reads or not set(x.law.reads) <= set(level):
-            return None
-        law = ExponentError(x.law, name, {k: level[k] for k in x.law.reads})
-        return law if law.at_work else None
-
-    for film in films:
-        if law := exponent_error(film):
-            new.append(f"{film.name}^{name}")
-            network = copy_link(network, film, new[-1], law)
-    for loss in losses:
-        if law := exponent_error(loss):
-            new.append(f"{loss.name}^{name}")
-            network = copy_source(network, loss, new[-1], law)
-    return _with_parameter(network, f"{parent}^{name}", new, doubt["input exponent"])
+    copies: dict[str, tuple[Link | Source, Law]] = {}
+    items: list[Link | Source] = [*films, *losses]
+    for x in items:
+        if name in x.law.reads and set(x.law.reads) <= set(level):
+            law = ExponentError(x.law, name, {k: level[k] for k in x.law.reads})
+            copies |= {f"{x.name}^{name}": (x, law)} if law.at_work else {}
+    return _with_copies(network, f"{parent}^{name}", copies, doubt["input exponent"])
 
 
 def _with_difference(network: Network, parent: str, films: Sequence[Link], doubt: Doubt) -> Network:
     """The exponent of the temperature difference in the films of free convection."""
     free = [x for x in films if isinstance(x.law.temperature, (Power, Table, FilmTable))]
-    for x in free:
-        network = copy_link(network, x, f"{x.name}^dT", WithTemperature(x.law, exponent_derivative(x.law.temperature)))
-    return _with_parameter(network, f"{parent}^dT", [f"{x.name}^dT" for x in free], doubt["difference exponent"])
+    copies = {f"{x.name}^dT": (x, WithTemperature(x.law, exponent_derivative(x.law.temperature))) for x in free}
+    return _with_copies(network, f"{parent}^dT", copies, doubt["difference exponent"])
 
 
 def _with_warming(network: Network, parent: str, losses: Sequence[Source], doubt: Doubt) -> Network:
     """The slope with temperature of friction."""
     greased = [x for x in losses if x.kind == "friction" and x.law.temperature == CONSTANT]
-    for x in greased:
-        network = copy_source(network, x, f"{x.name}^T", WithTemperature(x.law, GREASE))
-    return _with_parameter(network, f"{parent}^T", [f"{x.name}^T" for x in greased], doubt["warming"], "1/K")
+    copies = {f"{x.name}^T": (x, WithTemperature(x.law, GREASE)) for x in greased}
+    return _with_copies(network, f"{parent}^T", copies, doubt["warming"], "1/K")
 
 
-def _with_parameter(network: Network, name: str, targets: Sequence[str], sd: float, unit: str = "1") -> Network:
-    if not targets:
+def _with_copies(
+    network: Network, name: str, copies: Mapping[str, tuple[Link | Source, Law]], sd: float, unit: str = "1"
+) -> Network:
+    """With copies of links or losses that one parameter of the form moves."""
+    if not copies:
         return network
-    new = Parameter(
-        name,
-        tuple((t, 1.0) for t in targets),
-        value=0.0,
-        unit=unit,
-        low=-2.5 * sd,
-        high=2.5 * sd,
-        prior_sd=sd,
-        mapping="amplitude",
-        neutral=0.0,
-        source="scatter of published exponents",
-    )
-    return replace(network, parameters=(*network.parameters, new))
+    acts, why = tuple((copy, 1.0) for copy in copies), "scatter of published exponents"
+    new = Parameter(name, acts, 0.0, unit, -2.5 * sd, 2.5 * sd, sd, "amplitude", 0.0, source=why)
+    return with_parameter(copy_elements(network, copies), new)
 
 
 def shares(parent: str, films: Sequence[Link], doubt: Doubt = USUAL) -> Iterator[Parameter]:
@@ -221,11 +203,5 @@ def shares(parent: str, films: Sequence[Link], doubt: Doubt = USUAL) -> Iterator
     if len(by_body) < 2:
         return
     for body, names in by_body.items():
-        yield Parameter(
-            f"{parent}:{body}",
-            tuple((n, 1.0) for n in names),
-            low=0.5,
-            high=2.0,
-            prior_sd=doubt["share"],
-            source="scatter of published film sets",
-        )
+        acts, why = tuple((n, 1.0) for n in names), "scatter of published film sets"
+        yield Parameter(f"{parent}:{body}", acts, low=0.5, high=2.0, prior_sd=doubt["share"], source=why)

@@ -28,18 +28,11 @@ def reference_of(network: Network, tests: Sequence[Test], effects: Collection[st
     """Over these tests alone.  effects : in the network, whose sizes count"""
     load, records = load_point(network, tests), _records(tests)
     mains = {network.signal(q) for q in INPUTS}
-    signals = {
-        n: SignalReference(
-            _rounded(np.sqrt(np.nanmean(u**2))),
-            _rounded(np.nanmin(u)),
-            _rounded(np.nanmax(u)),
-            load.get(n),
-            network.measures(n),
-            n in mains,
-        )
-        for n, u in records.items()
-        if np.isfinite(u).any()
-    }
+    signals = {}
+    for n, u in records.items():
+        if np.isfinite(u).any():
+            level, low, high = (_rounded(x) for x in (np.sqrt(np.nanmean(u**2)), np.nanmin(u), np.nanmax(u)))
+            signals[n] = SignalReference(level, low, high, load.get(n), network.measures(n), n in mains)
     for name in dict.fromkeys(b for t in tests for b in t.boundaries):
         each = [np.asarray(t.boundaries[name], float) for t in tests if name in t.boundaries]
         mean = _rounded(np.mean([np.mean(u) for u in each]))
@@ -47,12 +40,8 @@ def reference_of(network: Network, tests: Sequence[Test], effects: Collection[st
         signals[name] = SignalReference(mean, _rounded(low), _rounded(high), mean)
     start = tests[0].initial if tests else None
     mean_start = float(np.mean(list(start.values()))) if isinstance(start, Mapping) else start
-    return Reference(
-        signals,
-        effect_sizes(network, effects, tests),
-        tuple(t.name for t in tests),
-        start_C=None if mean_start is None else _rounded(mean_start),
-    )
+    start_C, sizes = None if mean_start is None else _rounded(mean_start), effect_sizes(network, effects, tests)
+    return Reference(signals, sizes, tuple(t.name for t in tests), start_C=start_C)
 
 
 def _records(tests: Sequence[Test]) -> dict[str, Array]:

@@ -158,18 +158,7 @@ def _sensor(network: Network, same: Sequence[Channel], doubt: Doubt) -> list[Par
 
 
 def _offset(name: str, target: str, sd: float, source: str, unit: str = "K") -> Parameter:
-    return Parameter(
-        name,
-        ((target, 1.0),),
-        value=0.0,
-        unit=unit,
-        low=-POSSIBLE * sd,
-        high=POSSIBLE * sd,
-        prior_sd=sd,
-        mapping="offset",
-        neutral=0.0,
-        source=source,
-    )
+    return Parameter(name, ((target, 1.0),), 0.0, unit, -POSSIBLE * sd, POSSIBLE * sd, sd, "offset", 0.0, source=source)
 
 
 def scene_of(case: Case) -> Scene:
@@ -191,9 +180,8 @@ def case_reference(case: Case) -> Reference:
     new = reference_of(with_effects(case.model.network, effects_of(case), ()), case.usable, names)
     levels = stored.levels
     signals = {n: replace(one, level=levels.get(n, one.level)) for n, one in new.signals.items()}
-    return replace(
-        new, signals={**stored.signals, **signals}, sizes={**new.sizes, **stored.sizes}, errors=stored.errors
-    )
+    sizes = {**new.sizes, **stored.sizes}
+    return replace(new, signals={**stored.signals, **signals}, sizes=sizes, errors=stored.errors)
 
 
 def standing_reference(case: Case) -> Reference:

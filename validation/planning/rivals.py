@@ -105,11 +105,9 @@ def refitted_gains(evidence: Evidence, models: CompetingModels, promised: Iterab
     the largest share that any of those kept.
     """
     plans = sorted(promised, key=lambda p: -p.worth)
-    separations: list[Gaps] = [
-        {pair: predicted_deviance(evidence, models, p.tests, pair) for pair in closest_pair(p.gaps)}
-        for p in plans[:CHECKED]
-    ]
-    separations += [{}] * (len(plans) - len(separations))
+    closest = [closest_pair(p.gaps) if i < CHECKED else [] for i, p in enumerate(plans)]
+    pairs = zip(plans, closest, strict=True)
+    separations = [{pair: predicted_deviance(evidence, models, p.tests, pair) for pair in some} for p, some in pairs]
     shares = [g / p.gaps[pair] for gaps, p in zip(separations, plans, strict=True) for pair, g in gaps.items()]
     share = float(np.clip(max(shares, default=1.0), 0.0, 1.0))
     left = [
@@ -147,18 +145,8 @@ def _difference(evidence: Evidence, models: CompetingModels, new: Sequence[Test]
     near += segments(network, read, here, free)
     theta, tests = np.concatenate([rival.theta, np.zeros(len(extra))]), (*evidence.tests, *read)
     error = widened_error(evidence, read)
-    fit = minimise(
-        network,
-        tests,
-        Unknowns(free),
-        theta,
-        models.noise,
-        fixed,
-        STEPS,
-        CachedSegments(near),
-        worth=ENOUGH,
-        error=error,
-    )
+    cache = CachedSegments(near)
+    fit = minimise(network, tests, Unknowns(free), theta, models.noise, fixed, STEPS, cache, worth=ENOUGH, error=error)
     return deviance_difference(fit, models.fit(right))
 
 

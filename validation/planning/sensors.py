@@ -31,19 +31,13 @@ def next_sensors(evidence: Evidence, models: CompetingModels) -> list[Experiment
     """Places without a sensor, by the deviance gap of the pair that stays closest, per hour of mounting."""
     network = evidence.fit.network
     places = {p.name: p for p in free_places(network, evidence.tests)}
-    plans = [
-        Plan(
-            place.name,
-            HOURS[access(network, place)],
-            [with_thermocouples(t, [place]) for t in evidence.tests],
-            separation(evidence, models, more),
-        )
-        for place, more in with_sensors(evidence, tuple(places.values()), models.group)
-    ]
+    kinds = {name: access(network, place) for name, place in places.items()}
+    plans = []
+    for place, more in with_sensors(evidence, tuple(places.values()), models.group):
+        tests = [with_thermocouples(t, [place]) for t in evidence.tests]
+        plans.append(Plan(place.name, HOURS[kinds[place.name]], tests, separation(evidence, models, more)))
     return [
-        Experiment(
-            "place", p.what, separable_pairs(evidence, p.gaps), p.gain, p.hours, WHY[access(network, places[p.what])]
-        )
+        Experiment("place", p.what, separable_pairs(evidence, p.gaps), p.gain, p.hours, WHY[kinds[p.what]])
         for p in refitted_gains(evidence, models, plans)
     ]
 

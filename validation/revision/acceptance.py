@@ -13,9 +13,8 @@ from dataclasses import dataclass, replace
 from types import MappingProxyType
 
 import numpy as np
-from numpy.typing import NDArray
 
-from geom.arrays import Array
+from geom.arrays import Array, Mask
 from measured.case import Test
 from measured.sensors.blocks import groups
 from validation.calibration.calibrate import ROUGH, CachedSegments, Fit, minimise
@@ -101,7 +100,7 @@ def halves(test: Test, middle: float | None = None) -> tuple[Test, Test]:
     cut = start.size // 2 if middle is None else np.clip(np.searchsorted(test.time[start], middle), 1, start.size - 1)
     first = np.arange(test.time.size) < start[cut]
 
-    def read(where: NDArray[np.bool_]) -> Test:
+    def read(where: Mask) -> Test:
         return replace(test, channels=tuple(replace(c, y=np.where(where, c.y, np.nan)) for c in test.channels))
 
     return read(first), read(~first)
@@ -264,9 +263,8 @@ def visible_check(fit: Fit, name: str) -> Check:
     """Whether the readings show an amplitude that no prediction is judged by."""
     k = fit.unknowns.names.index(name)
     far = abs(float(fit.theta[k])) / float(np.sqrt(fit.covariance[k, k]))
-    return Check(
-        "shown", far > VISIBLE, far, VISIBLE, f"{name} is {far:.1f} deviations from none, {VISIBLE:g} would do"
-    )
+    words = f"{name} is {far:.1f} deviations from none, {VISIBLE:g} would do"
+    return Check("shown", far > VISIBLE, far, VISIBLE, words)
 
 
 def fall(before: float, after: float) -> str:

@@ -11,7 +11,7 @@ import numpy as np
 
 from geom.text import counted
 from measured.case import Case
-from validation.calibration.calibrate import no_progress
+from validation.calibration.calibrate import Progress, no_progress
 from validation.comparison.compare import Comparison, errors, pooled
 from validation.diagnosis import diagnose
 from validation.effects import effect
@@ -25,7 +25,6 @@ from validation.yardstick.suggestions import suggested_effects
 from validation.yardstick.words import NAMES, WORTH
 from validation.yardstick.yardstick import yardstick
 
-Progress = Callable[[str], None]
 Trial = tuple[tuple[str, ...], dict[str, float | str]]  # effects, and what speaks for them
 LEAST = 0.005  # K, a rise that two digits show
 LIKELY = 3  # sets tried where no name was added: each costs a fit, and the criterion decides
@@ -62,10 +61,7 @@ class Step:
         return pooled(rows) if error is None else error
 
     def document(self) -> dict:
-        tests = [
-            {"name": t.name, "role": t.role, "rmse_K": t.rmse_K, "fitted_rmse_K": t.fitted_rmse_K}
-            for t in self.comparison.tests
-        ]
+        tests = [t.summary for t in self.comparison.tests]
         return {
             "step": self.step,
             "effect": self.effect,
@@ -230,9 +226,8 @@ def _added(
             break
         name = supervisor.choose(diagnosis, choice)
         if name is None:
-            declined = (
-                declined or f"{' or '.join(c.words for c in choice)} {'were' if len(choice) > 1 else 'was'} not added"
-            )
+            were = "were" if len(choice) > 1 else "was"
+            declined = declined or f"{' or '.join(c.words for c in choice)} {were} not added"
             if not supervisor.suggest:
                 break
             continue

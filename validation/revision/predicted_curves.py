@@ -2,17 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from itertools import combinations
 
 import numpy as np
 
-from geom.arrays import Array
+from geom.arrays import Array, Numbers
 from geom.errors import InputError, ThermoscopeError
 from lumped.model.network import Network
 from measured.case import Case, Model, Test
-from validation.calibration.calibrate import no_progress
+from validation.calibration.calibrate import Progress, no_progress
 from validation.comparison.predict import predict
 from validation.inference.result import CurrentLevel
 from validation.parameters.unknowns import standing
@@ -20,7 +20,6 @@ from validation.planning.candidate_tests import Experiment, candidate_tests
 from validation.planning.permissible_current import current_levels, heat_limits, permissible_tests
 from validation.revision.revise import add
 
-Progress = Callable[[str], None]
 UNCHANGED = "nothing missing"  # the hypothesis that the model is right as it is
 
 
@@ -96,9 +95,7 @@ def _network(case: Case, model: Model) -> tuple[Network, dict[str, float]]:
     return network, {k: v for k, v in model.values.items() if k in names}
 
 
-def _curves(
-    hypothetical: Mapping[str, tuple[Network, Mapping[str, float]]], test: Test
-) -> dict[str, dict[str, Array]] | None:
+def _curves(hypothetical: Mapping[str, tuple[Network, Numbers]], test: Test) -> dict[str, dict[str, Array]] | None:
     """None where a model runs away: it lacks what would cool it."""
     curves = {}
     try:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, replace
 from math import isfinite, sqrt
 
@@ -20,7 +20,7 @@ from lumped.schemas.reader import suggestion
 from measured.case import AddedEffect, Case, Channel, Model, Test
 from measured.sensors.faults import broken_channels, without
 from measured.sensors.operators import of_measurement
-from validation.calibration.calibrate import Fit, no_progress, with_model_error
+from validation.calibration.calibrate import Fit, Progress, no_progress, with_model_error
 from validation.calibration.intervals import Estimate, Profile, estimates
 from validation.calibration.model_error import ModelError
 from validation.calibration.profile import profiles
@@ -52,7 +52,6 @@ from validation.revision.acceptance import (
 from validation.revision.repeated_events import repeated_events
 from validation.tables import revision_tables
 
-Progress = Callable[[str], None]
 GETS_WORSE = 1.05  # a fit under priors may lose so much on single tests
 LOST = 2.0  # a test that was fitted and is so many times worse has paid for another: no compromise costs that
 TRAINING = ("calibrate", "validate")
@@ -173,9 +172,8 @@ def add(
     for one in new:
         inside(one, case)
         if one.name in {e.name for e in case.model.effects}:
-            raise InputError(
-                f"'{one.name}' is in the model already", f"case '{case.name}'", "another effect, or `remove` it first"
-            )
+            right = "another effect, or `remove` it first"
+            raise InputError(f"'{one.name}' is in the model already", f"case '{case.name}'", right)
     if not case.model.values:
         progress("calibrating without the effect")
         bare = calibrate(case, TRAINING, progress).model
@@ -221,9 +219,8 @@ def _revised(
     before = before or errors(case)
     tests = [t for t in case.tests if t.role in roles]
     if not tests:
-        raise InputError(
-            f"no test has the role {' or '.join(roles)}", f"case '{case.name}'", "give at least one that role"
-        )
+        what = f"no test has the role {' or '.join(roles)}"
+        raise InputError(what, f"case '{case.name}'", "give at least one that role")
     training = replace(case.training(), model=model)
     sample = tests if action == "calibrate" else training.tests
     reference = replace(case_reference(training), tests=tuple(t.name for t in sample))
@@ -357,11 +354,8 @@ def _fit_checks(case: Case, fit: Fit, new: Model, changes: Sequence[Change]) -> 
     pairs = {"left out": np.sqrt(square / seconds)} if seconds else {}
     pairs |= {k: np.array([mean_square(some, "before"), mean_square(some, "after")]) for k, some in groups.items()}
     sigma = float(np.sqrt(np.mean([c.sigma_K**2 for t in fitted for c in t.channels])))
-    which = {
-        "left out": "each of its tests predicted from the rest",
-        "unseen": ", ".join(c.name for c in unseen),
-        FITTED: "the tests it was fitted to",
-    }
+    which = {"left out": "each of its tests predicted from the rest", FITTED: "the tests it was fitted to"}
+    which["unseen"] = ", ".join(c.name for c in unseen)
     checks = [
         Check(kind, bool(b <= max(GETS_WORSE * a, sigma)), float(b), float(a), f"{which[kind]}: {fall(a, b)}")
         for kind, (a, b) in pairs.items()
@@ -410,9 +404,8 @@ def _profiled(
     fit: Fit, tests: Sequence[Test], model: Model, globs: Sequence[str], progress: Progress
 ) -> dict[str, Profile]:
     """Profile intervals of a stage's own parameters that match a glob."""
-    names = [
-        p.name for p in fit.unknowns.parameters if not of_measurement(p) and any(belongs(p.name, g) for g in globs)
-    ]
+    every = [p.name for p in fit.unknowns.parameters if not of_measurement(p)]
+    names = [name for name in every if any(belongs(name, g) for g in globs)]
     return profiles(fit, *_conditions(fit, tests, model), names, progress)
 
 
@@ -468,9 +461,8 @@ def other_changes(changes: Sequence[Change], fitted: Collection[str]) -> list[st
     was, now = (mean_square(outside, side, [c.seconds for c in outside]) for side in ("before", "after"))
     change = f"{called} {fall(was, now)}"
     worst = max(outside, key=lambda c: c.after - c.before)
-    return [
-        f"{change}: {worst.name} got worse, the fit follows what only the fitted tests show" if now > was else change
-    ]
+    why = f": {worst.name} got worse, the fit follows what only the fitted tests show" if now > was else ""
+    return [f"{change}{why}"]
 
 
 def mean_square(changes: Sequence[Change], side: str, weights: Sequence[float] | None = None) -> float:

@@ -6,11 +6,10 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
-from geom.arrays import Array
+from geom.arrays import Array, Ints, Mask
 from validation.yardstick.free_network import loss_factors
-from validation.yardstick.records import Columns, Record
+from validation.yardstick.records import Columns, Folds, Record
 
 
 @dataclass(frozen=True)
@@ -21,7 +20,7 @@ class BlackBox:
     """
 
     window: float
-    steady: NDArray[np.bool_]
+    steady: Mask
     weights: Array
 
     def run(self, record: Record) -> Array:
@@ -38,12 +37,12 @@ class BlackBox:
         return np.column_stack([np.interp(record.time, record.time[ends], column) for column in T.T])
 
 
-def window_ends(rows: int, window: int) -> NDArray[np.int64]:
+def window_ends(rows: int, window: int) -> Ints:
     """First row of every window, and the last row."""
     return np.append(np.arange(0, rows - 1, window), rows - 1)
 
 
-def driven(record: Record, ends: NDArray[np.int64]) -> Array:
+def driven(record: Record, ends: Ints) -> Array:
     """(n_window, n): what drives each window, as means over it times its share of a whole one."""
     drivers = np.column_stack([record.boundary, loss_factors(record.u)])
     size = np.diff(ends)
@@ -61,7 +60,7 @@ class BlackBoxLessons:
     Ab: Sequence[Array]
 
     @staticmethod
-    def of(folds: Sequence[Sequence[Record]], columns: Columns, window: float) -> BlackBoxLessons:
+    def of(folds: Folds, columns: Columns, window: float) -> BlackBoxLessons:
         def taught(record: Record) -> tuple[Array, Array]:
             ends = window_ends(len(record.time), record.rows(window))
             A = np.column_stack([record.T[ends[:-1]][:, columns.steady], driven(record, ends)])

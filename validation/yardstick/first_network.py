@@ -18,13 +18,14 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from geom.arrays import Array
+from geom.arrays import Array, Mask
 from geom.one_thread import one_blas_thread
 from lumped.model.quantities import FLOWS
+from lumped.model.topology import reached
 from measured.case import Case
 from measured.importing.starter import FirstNetwork, FirstTerm
 from validation.yardstick import free_network
-from validation.yardstick.records import Columns, Record
+from validation.yardstick.records import Columns, Folds
 from validation.yardstick.yardstick import best_free_network, error_of, folds_of, rms
 
 ELECTRICAL = ("current", "torque", "power", "voltage", "frequency", "share")  # no film follows what these measure
@@ -69,16 +70,10 @@ def learn_network(case: Case, first: FirstNetwork) -> FirstNetwork:
         return first  # nothing heats it: there is no size to give to anything
     (theta, C), *parts = [(s * theta, s * C) for theta, C in fits for s in [first.watts / table.mean_heat(theta, heat)]]
     scale = dict(zip(columns.inputs, map(float, columns.scale), strict=True))
-    terms = [
-        FirstTerm(
-            ends,
-            float(theta[k]),
-            tuple((f.input, scale[f.input], f.exponent) for f in of),
-            _spread([part[k] for part, _ in parts]),
-        )
-        for k, (ends, of) in enumerate(table.candidates)
-        if theta[k] > 0.0
-    ]
+    follows = [tuple((f.input, scale[f.input], f.exponent) for f in of) for _, of in table.candidates]
+    spreads = [_spread(values) for values in zip(*(part for part, _ in parts), strict=True)]
+    candidates = zip(table.candidates, theta, follows, spreads, strict=True)
+    terms = [FirstTerm(ends, float(size), of, spread) for (ends, _), size, of, spread in candidates if size > 0.0]
     capacities = {node: (float(C[n]), _spread([part[n] for _, part in parts])) for n, node in enumerate(table.nodes)}
     length = max(r.time[-1] - r.time[0] for fold in folds for r in fold)
     alone = [node for node in table.nodes if not _reaches(node, terms, first.boundaries)]
@@ -88,9 +83,7 @@ def learn_network(case: Case, first: FirstNetwork) -> FirstNetwork:
     return replace(first, capacities=capacities, terms=terms, learnt=learnt)
 
 
-def _least_terms(
-    tables: Sequence[_TermTable], folds: Sequence[Sequence[Record]]
-) -> tuple[NDArray[np.bool_], _TermTable, Array]:
+def _least_terms(tables: Sequence[_TermTable], folds: Folds) -> tuple[Mask, _TermTable, Array]:
     """The terms that predict best, the table that they come from, and the error of each fold left out (K).
 
     tables : all are judged by what the last one says that each fold counts
@@ -103,9 +96,7 @@ def _least_terms(
     return needed, replace(table, credit=credit), np.array([np.exp(np.mean(np.log(e))) for e in each])
 
 
-def _without_odd(
-    table: _TermTable, folds: Sequence[Sequence[Record]], left_out: Array
-) -> tuple[NDArray[np.bool_], _TermTable, Array] | None:
+def _without_odd(table: _TermTable, folds: Folds, left_out: Array) -> tuple[Mask, _TermTable, Array] | None:
     """The same learnt without the fold that is predicted worst, if something else held there: the others predict each
     other much better without it, and it far worse than each other. None if not, and where too few others are left.
 
@@ -122,18 +113,14 @@ def _without_odd(
     return (needed, candidate, errors) if now < ODD_GAIN * before and errors[worst] > ODD * now else None
 
 
-def _errors_left_out(
-    table: _TermTable, folds: Sequence[Sequence[Record]], active: NDArray[np.bool_]
-) -> list[list[float]]:
+def _errors_left_out(table: _TermTable, folds: Folds, active: Mask) -> list[list[float]]:
     """Of each record of each fold (K), predicted from the others."""
     every = range(len(folds))
     models = [table.free(*table.fit([j for j in every if j != i], active)) for i in every]
     return [[max(rms([error_of(m, r)]), LEAST_K) for r in fold] for m, fold in zip(models, folds, strict=True)]
 
 
-def _needed_terms(
-    table: _TermTable, folds: Sequence[Sequence[Record]], credit: Array
-) -> tuple[tuple[float, NDArray[np.bool_]], tuple[float, NDArray[np.bool_]]]:
+def _needed_terms(table: _TermTable, folds: Folds, credit: Array) -> tuple[tuple[float, Mask], tuple[float, Mask]]:
     """The few terms (n_term,) with which what was left out is predicted best and their error (K), found in two ways.
 
     One way there begins with constant links between all nodes and takes in, one by one, the loss or the input that a
@@ -147,10 +134,10 @@ def _needed_terms(
     every = range(len(folds))
     counts = np.concatenate([[c] * len(fold) for c, fold in zip(credit, folds, strict=True)])
 
-    def left_out(active: NDArray[np.bool_]) -> float:
+    def left_out(active: Mask) -> float:
         return float(np.exp(np.average(np.log(np.concatenate(_errors_left_out(table, folds, active))), weights=counts)))
 
-    def grown() -> tuple[float, NDArray[np.bool_]]:
+    def grown() -> tuple[float, Mask]:
         needed = np.array([len(ends) == 2 and not of for ends, of in table.candidates])
         least = left_out(needed)
         while trials := [_with(needed, k) for k in table.steepest_terms(every, needed)]:
@@ -162,7 +149,7 @@ def _needed_terms(
             needed, least = trials[best], errors[best]
         return pruned(needed, least)
 
-    def pruned(needed: NDArray[np.bool_], least: float) -> tuple[float, NDArray[np.bool_]]:
+    def pruned(needed: Mask, least: float) -> tuple[float, Mask]:
         shares, last = table.shares(every, *table.fit(every, needed)), least
         order = sorted(np.flatnonzero(needed), key=lambda k: (-table.price[k] * (shares[k] < MAIN), shares[k]))
         count = max(len(order) // 2, 1)
@@ -181,7 +168,7 @@ def _needed_terms(
     return (many if len(table.nodes) > FEW_NODES else grown()), many
 
 
-def _with(selection: NDArray[np.bool_], k: int) -> NDArray[np.bool_]:
+def _with(selection: Mask, k: int) -> Mask:
     """The selection and one term more."""
     out = selection.copy()
     out[k] = True
@@ -196,18 +183,9 @@ def _spread(values: Sequence[float]) -> float:
 
 def _reaches(node: str, terms: Sequence[FirstTerm], boundaries: Sequence[str]) -> bool:
     """Does heat find a way from a node to a boundary?"""
-    visited, todo = {node}, [node]
-    while todo:
-        here = todo.pop()
-        for term in terms:
-            if len(term.ends) == 2 and here in term.ends:
-                other = term.ends[term.ends[0] == here]
-                if other in boundaries:
-                    return True
-                if other not in visited:
-                    visited.add(other)
-                    todo.append(other)
-    return False
+    links = [set(term.ends) for term in terms if len(term.ends) == 2]
+    there = reached([node], lambda here: () if here in boundaries else set().union(*(x for x in links if here in x)))
+    return not set(boundaries).isdisjoint(there)
 
 
 @dataclass(frozen=True)
@@ -234,7 +212,7 @@ class _TermTable:
 
     @staticmethod
     def of(
-        folds: Sequence[Sequence[Record]],
+        folds: Folds,
         columns: Columns,
         form: free_network.Form,
         places: Mapping[str, str],
@@ -247,10 +225,8 @@ class _TermTable:
         stirs = [may_stir([measures(f.input) for f in of]) for of in links]
         quantities = {measures(name) for name in columns.inputs}
         heats = [may_heat([measures(f.input) for f in of], quantities) for of in losses]
-        bodies = [
-            *(s for s, steady in zip(columns.sensors, columns.steady, strict=True) if steady),
-            *columns.boundaries,
-        ]
+        bodies = [s for s, steady in zip(columns.sensors, columns.steady, strict=True) if steady]
+        bodies += columns.boundaries
         number: dict[tuple[tuple[str, ...], free_network.Powers], int] = {}
         rows = []
         for sensor in nodes:
@@ -291,7 +267,7 @@ class _TermTable:
         ]
         return replace(self, normal=normal, weight=_weights(normal), credit=credit)
 
-    def fit(self, lessons: Sequence[int], active: NDArray[np.bool_]) -> tuple[Array, Array]:
+    def fit(self, lessons: Sequence[int], active: Mask) -> tuple[Array, Array]:
         """Coefficients of all terms and capacities of the nodes, whose geometric mean is 1.  active : may be > 0"""
         place = np.cumsum(active) - 1  # of an active term among these
         parts = []
@@ -317,7 +293,7 @@ class _TermTable:
     def _table(self, node: int, lessons: Sequence[int]) -> Array:
         return np.sum([self.normal[i][node] for i in lessons], axis=0)
 
-    def steepest_terms(self, lessons: Sequence[int], active: NDArray[np.bool_]) -> list[int]:
+    def steepest_terms(self, lessons: Sequence[int], active: Mask) -> list[int]:
         """Of each node the terms outside `active` that would explain most of what is left of its rises, by price."""
         theta, C = self.fit(lessons, active)
         out: dict[int, None] = {}

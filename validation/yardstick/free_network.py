@@ -17,10 +17,9 @@ from itertools import combinations
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
-from geom.arrays import Array
-from validation.yardstick.records import Columns, Record
+from geom.arrays import Array, Mask
+from validation.yardstick.records import Columns, Folds, Record
 
 Shape = tuple[float, float]  # exponent, and the share of the largest size from which on it acts
 
@@ -56,12 +55,8 @@ def loss_factors(u: Array) -> Array:
     """(n, n_loss): 1, the size and square of every input, and of every pair the four products of these."""
     size = np.abs(u)
     single = [size, size**2]
-    pairs = [
-        size[:, [i]] ** p * size[:, [j]] ** q
-        for i, j in combinations(range(u.shape[1]), 2)
-        for p in (1, 2)
-        for q in (1, 2)
-    ]
+    both = combinations(range(u.shape[1]), 2)
+    pairs = [size[:, [i]] ** p * size[:, [j]] ** q for i, j in both for p in (1, 2) for q in (1, 2)]
     return np.column_stack([np.ones(len(u)), *single, *pairs])
 
 
@@ -154,7 +149,7 @@ class NetworkLessons:
     normal: Sequence[Sequence[Array]]
 
     @staticmethod
-    def of(folds: Sequence[Sequence[Record]], columns: Columns, form: Form) -> NetworkLessons:
+    def of(folds: Folds, columns: Columns, form: Form) -> NetworkLessons:
         def taught(fold: Sequence[Record]) -> list[Array]:
             each = zip(*(windows(record, columns, form) for record in fold), strict=True)
             return [sum((A.T @ A for A in tables), np.zeros(())) for tables in each]
@@ -194,7 +189,7 @@ def nonnegative(AA: Array, Ab: Array, near: Array | None = None) -> Array:
     return x
 
 
-def _active_set(G: Array, h: Array, begin: NDArray[np.bool_]) -> Array:
+def _active_set(G: Array, h: Array, begin: Mask) -> Array:
     """min x' G x / 2 - h' x over x >= 0: one term more at a time, and out with those that would fall below zero.
 
     begin : terms that are free from the start; those of them that would be below zero leave at once

@@ -6,9 +6,8 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
-from geom.arrays import Array
+from geom.arrays import Array, Mask
 from measured.case import Test, seconds_read
 
 MOST_ROWS = 40_000  # of all tests together: twice as many teach little more and double the wait
@@ -29,7 +28,7 @@ class Columns:
     """
 
     sensors: tuple[str, ...]
-    steady: NDArray[np.bool_]
+    steady: Mask
     boundaries: tuple[str, ...]
     inputs: tuple[str, ...]
     scale: Array
@@ -46,7 +45,7 @@ class Record:
     name: str
     time: Array
     T: Array
-    read: NDArray[np.bool_]
+    read: Mask
     boundary: Array
     u: Array
 
@@ -65,17 +64,18 @@ class Record:
         return Record(self.name, self.time[rows], self.T[rows], self.read[rows], self.boundary[rows], self.u[rows])
 
 
+Folds = Sequence[Sequence[Record]]  # what is left out at a time
+
+
 def table_columns(fitted: Sequence[Test], every: Sequence[Test]) -> Columns:
     """The columns of the tests that may be learnt from; a sensor that some test lacks drives no other."""
     sensors = tuple(dict.fromkeys(c.name for t in fitted for c in t.channels if np.isfinite(c.y).any()))
-    present = [{c.name for c in t.channels if np.isfinite(c.y).any()} for t in every]
-    steady = np.array([all(name in names for names in present) for name in sensors], bool)
+    read = [{c.name for c in t.channels if np.isfinite(c.y).any()} for t in every]
+    steady = np.array([all(name in names for names in read) for name in sensors], bool)
     boundaries = _in_all([t.boundaries for t in every])
-    inputs = _telling(
-        [n for n in _in_all([t.inputs for t in every]) if any(np.any(t.inputs[n]) for t in fitted)],
-        fitted,
-        MOST_INPUTS if len(sensors) <= FEW_SENSORS else FEW_INPUTS,
-    )
+    most = MOST_INPUTS if len(sensors) <= FEW_SENSORS else FEW_INPUTS
+    present = [n for n in _in_all([t.inputs for t in every]) if any(np.any(t.inputs[n]) for t in fitted)]
+    inputs = _telling(present, fitted, most)
     scale = np.array([max(float(np.max(np.abs(t.inputs[n]))) for t in fitted) for n in inputs])
     return Columns(sensors, steady, boundaries, inputs, scale)
 
@@ -144,22 +144,16 @@ def table_record(test: Test, columns: Columns, step: int = 1) -> Record:
     absent = np.full(test.time.size, np.nan)
     y = np.column_stack([by_name.get(name, absent) for name in columns.sensors])
     full = np.column_stack([_filled(test.time, column) for column in y.T])
-    boundary = [np.broadcast_to(np.asarray(test.boundaries[b], float), test.time.shape) for b in columns.boundaries]
+    around = [np.broadcast_to(np.asarray(test.boundaries[b], float), test.time.shape) for b in columns.boundaries]
     inputs = [np.asarray(test.inputs[i], float) / s for i, s in zip(columns.inputs, columns.scale, strict=True)]
 
     def mean(table: Array) -> Array:
         return table[:n].reshape(n // step, step, *table.shape[1:]).mean(axis=1)
 
     empty = np.empty((test.time.size, 0))
+    boundary, u = np.column_stack([empty, *around]), np.column_stack([empty, *inputs])
     read = np.isfinite(y)[:n].reshape(n // step, step, y.shape[1]).any(axis=1)
-    return Record(
-        test.name,
-        mean(test.time),
-        mean(full),
-        read,
-        mean(np.column_stack(boundary) if boundary else empty),
-        mean(np.column_stack(inputs) if inputs else empty),
-    )
+    return Record(test.name, mean(test.time), mean(full), read, mean(boundary), mean(u))
 
 
 def _filled(time: Array, y: Array) -> Array:

@@ -10,7 +10,7 @@ import numpy as np
 from geom.arrays import Array
 from measured.case import Case
 from validation.yardstick import free_network
-from validation.yardstick.records import Columns, Record
+from validation.yardstick.records import Columns, Folds, Record
 
 SHARE = 0.05  # of all that warms and cools a sensor: what carries less is not worth a name
 
@@ -42,7 +42,7 @@ class Term:
 
 
 def needed_terms(
-    fit: Callable[[Sequence[int]], object], folds: Sequence[Sequence[Record]], columns: Columns, case: Case
+    fit: Callable[[Sequence[int]], object], folds: Folds, columns: Columns, case: Case
 ) -> tuple[Term, ...]:
     """The terms of a free network that no choice of tests does without, those that carry most first."""
     every = range(len(folds))
@@ -60,19 +60,8 @@ def needed_terms(
             size = capacity or 1.0
             unit = {"link": "1/s", "loss": "K/s"}[kind] if capacity is None else {"link": "W/K", "loss": "W"}[kind]
             low, high = others[:, n, k].min() * size, others[:, n, k].max() * size
-            out.append(
-                Term(
-                    places[sensor],
-                    kind,
-                    places.get(other, other),
-                    of,
-                    float(values[n, k] * size),
-                    float(low),
-                    float(high),
-                    unit,
-                    float(share[n, k]),
-                )
-            )
+            what = (places[sensor], kind, places.get(other, other), of)
+            out.append(Term(*what, float(values[n, k] * size), float(low), float(high), unit, float(share[n, k])))
     return tuple(sorted(out, key=lambda term: -term.share))
 
 

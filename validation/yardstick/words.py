@@ -48,9 +48,7 @@ def _rest(yard: Yardstick, comparison: Comparison, error: float) -> str:
     if not error > WORTH * yard.best_K:
         return ""
     kind = min(yard.errors, key=lambda k: np.nan_to_num(yard.errors[k], nan=np.inf))
-    gain = {
-        name: pooled([c for c in scoped(yard, comparison) if c.channel == name]) - of[kind]
-        for name, of in yard.sensors.items()
-    }
+    rows = scoped(yard, comparison)
+    gain = {name: pooled([c for c in rows if c.channel == name]) - of[kind] for name, of in yard.sensors.items()}
     most = max(gain, key=lambda name: gain[name])
     return f" About {error - yard.best_K:.1f} K is still to be learnt, most of it at {most}."

@@ -21,7 +21,7 @@ from lumped.model.once import once
 from measured.case import Case
 from validation.yardstick.black_box import BlackBoxLessons
 from validation.yardstick.free_network import Form, FreeNetwork, NetworkLessons, Shape
-from validation.yardstick.records import Columns, Record, row_step, table_columns, table_record
+from validation.yardstick.records import Columns, Folds, Record, row_step, table_columns, table_record
 from validation.yardstick.terms import Term, needed_terms
 
 WINDOWS = (1 / 200, 1 / 40, 1 / 13, 2 / 9)  # of a test: short ones drown in noise, long ones in what happens in them
@@ -46,7 +46,6 @@ class Plain(Protocol):
 
 
 Fitter = Callable[[Sequence[int]], Plain]  # from the numbers of the records that teach it
-Folds = list[list[Record]]
 R = TypeVar("R")
 
 
@@ -193,7 +192,7 @@ def free_network_error(case: Case) -> tuple[float, tuple[str, ...]] | None:
     return learnt and (rms(learnt[2][1], _steps(learnt[0])), learnt[1].sensors)
 
 
-def best_free_network(folds: Sequence[Sequence[Record]], columns: Columns) -> Form:
+def best_free_network(folds: Folds, columns: Columns) -> Form:
     """The window and powers with which a free network predicts best what was left out."""
     fit, _ = _best(_free_networks(folds, columns, POWERS), folds)
     whole = fit(range(len(folds)))
@@ -216,32 +215,32 @@ def _folds(records: Sequence[Record]) -> list[list[Record]]:
     return [[records[i] for i in sorted(order[k::count])] for k in range(count)]
 
 
-def _persistences(folds: Sequence[Sequence[Record]], columns: Columns) -> list[Fitter]:
+def _persistences(folds: Folds, columns: Columns) -> list[Fitter]:
     def fitter(boundary: int | None) -> Fitter:
         return lambda lessons: usual_rise([r for i in lessons for r in folds[i]], boundary)
 
     return [fitter(b) for b in (None, *range(len(columns.boundaries)))]
 
 
-def _windows(folds: Sequence[Sequence[Record]]) -> list[float]:
+def _windows(folds: Folds) -> list[float]:
     """Windows (s), as shares of the middle one of the records' lengths: the same whatever the sample step."""
     length = float(np.median([r.time[-1] - r.time[0] for fold in folds for r in fold]))
     return [share * length for share in WINDOWS]
 
 
-def _black_boxes(folds: Sequence[Sequence[Record]], columns: Columns) -> list[Fitter]:
+def _black_boxes(folds: Folds, columns: Columns) -> list[Fitter]:
     lessons = [BlackBoxLessons.of(folds, columns, h) for h in _windows(folds)]
     return [partial(a.fit, ridge=r) for a, r in product(lessons, RIDGES)]
 
 
 def _free_networks(
-    folds: Sequence[Sequence[Record]], columns: Columns, shapes: Sequence[tuple[Shape, ...]] = (*POWERS, *SHAPES)
+    folds: Folds, columns: Columns, shapes: Sequence[tuple[Shape, ...]] = (*POWERS, *SHAPES)
 ) -> list[Fitter]:
     some = shapes if columns.inputs else ((),)
     return [NetworkLessons.of(folds, columns, Form(h, s)).fit for s, h in product(some, _windows(folds))]
 
 
-def _best(fitters: Sequence[Fitter], folds: Sequence[Sequence[Record]]) -> tuple[Fitter, list[Array]]:
+def _best(fitters: Sequence[Fitter], folds: Folds) -> tuple[Fitter, list[Array]]:
     """The one that predicts best what was left out, with its errors there, record by record."""
     every, steps = range(len(folds)), _steps(folds)
 
@@ -257,7 +256,7 @@ def error_of(model: Plain, record: Record) -> Array:
     return np.where(record.read, record.T - model.run(record), np.nan)
 
 
-def _steps(folds: Sequence[Sequence[Record]]) -> list[float]:
+def _steps(folds: Folds) -> list[float]:
     return [record.step for fold in folds for record in fold]
 
 

@@ -50,7 +50,7 @@ def _following(network: Network, p: Parameter, signal: str, level: float) -> Net
     for link, name in zip(links, names, strict=True):
         assert isinstance(link.law, th.Fixed)
         law = th.InputPower(link.law.value, ((signal, level, 1.0),), link.law.temperature)
-        network = th.copy_link(network, link, name, law)
+        network = th.copy_element(network, link, name, law)
     new = Parameter(
         f"{LEARNED}{p.name} by {signal}",
         tuple((n, 1.0) for n in names),

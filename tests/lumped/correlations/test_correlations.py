@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from geom.errors import InputError
-from lumped.correlations import RangeWarning, tabulated
+from lumped.correlations import RangeWarning, film_tabulated
 from lumped.correlations.air_gap import becker_kaye, taylor_film
 from lumped.correlations.contacts import (
     concentric_cylinders,
@@ -191,8 +191,6 @@ def test_out_of_range_warns_with_value_and_range():
 def test_a_tabulated_film_is_the_correlation():
     with warnings.catch_warnings():
         warnings.simplefilter("error")
-        law = tabulated(lambda s, a: churchill_chu_plate(0.3, s, a), fluid_temperature=25.0)
+        law = film_tabulated(lambda s, a: churchill_chu_plate(0.3, s, a))
     for d in (3.3, 17.0, 64.0):
-        assert np.interp(d, law.difference, law.value) == pytest.approx(
-            churchill_chu_plate(0.3, 25 + d, 25.0)[0], rel=2e-3
-        )
+        assert law.at(d, 50.0 + d) == pytest.approx(churchill_chu_plate(0.3, 25 + d, 25.0)[0], rel=2e-3)

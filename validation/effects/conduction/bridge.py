@@ -2,7 +2,6 @@
 
 import math
 from abc import abstractmethod
-from dataclasses import dataclass
 
 from geom.description.roles import Role
 from lumped.model.network import Network
@@ -15,7 +14,6 @@ STEEL_W_M_K, STEEL_J_M3_K = 50.0, 3.6e6  # carbon steel, within 3 % of the table
 THICK, SHORT = 0.4, 1.0  # most of a rotor's diameter that a shaft has, least length of it in its own diameters
 
 
-@dataclass(frozen=True)
 class Bridge(Effect):
     """q = a (T_1 - T_2) between the means of two places, a in W/K; by one parameter where there are several pairs."""
 

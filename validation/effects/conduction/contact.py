@@ -1,11 +1,10 @@
 """A joint worse than assumed."""
 
-from dataclasses import dataclass
-
 from lumped.model.network import Link, Network
 from lumped.model.sites import across_gap, model_links, solids
 from lumped.transfer.laws import CONSTANT
-from validation.effects.base import Effect, Scene, with_parameter
+from validation.effects.base import Scene, WeakLinks
+from validation.effects.build import label
 
 
 def joints(network: Network) -> list[Link]:
@@ -22,32 +21,21 @@ def _solid(network: Network, link: Link) -> bool:
     )
 
 
-def label(link: Link) -> str:
-    return link.name.split(":", 1)[-1]
-
-
-@dataclass(frozen=True)
-class ContactResistance(Effect):
+class ContactResistance(WeakLinks):
     """A contact, fit or liner that conducts less than assumed: g = g0 (1 + a), -0.95 <= a <= 0."""
 
     kind = "contact"
     title = "contact resistance larger than assumed"
     sits = "a contact between two parts"
-    unit = "1"
     source = "interface gap, R = gap / k_air (Motor-CAD default gaps, Staton 2005)"
     isolating_test = "DC heating at standstill with sensors on both sides of the joint"
     typical = (-0.8, -0.2)
-    sign = -1
     prior_sd = 0.4
-    low = -0.95
-    high = 0.0
-    mapping = "relative"
     confused_with = ("contact", "loss.winding", "mass")
 
     @classmethod
     def candidate_places(cls, scene: Scene) -> list[str]:
         return [label(link) for link in joints(scene.network)]
 
-    def extend(self, network: Network) -> Network:
-        names = [link.name for link in joints(network) if label(link) == self.place]
-        return with_parameter(network, self.parameter(*names))
+    def links(self, network: Network) -> list[Link]:
+        return [link for link in joints(network) if label(link) == self.place]

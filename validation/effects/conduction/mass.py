@@ -1,20 +1,16 @@
 """More heat capacity than assumed."""
 
-from dataclasses import dataclass
-
 from lumped.model.network import Network
 from lumped.model.sites import solids
 from validation.effects.base import Effect, Scene, with_parameter
 
 
-@dataclass(frozen=True)
 class Mass(Effect):
     """Extra mass that takes part in the heating of a node: C = C0 (1 + a)."""
 
     kind = "mass"
     title = "extra mass"
     sits = "a part with a heat capacity"
-    unit = "1"
     source = "definition: attached parts, fixture, water in the jacket"
     isolating_test = "weigh it; step the loss and read the first minutes"
     typical = (0.1, 1.0)

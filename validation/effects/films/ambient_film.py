@@ -1,35 +1,22 @@
 """Heat transfer to the ambient air that a network lacks, beside whatever cools the face already."""
 
-from dataclasses import dataclass
-from typing import ClassVar
-
 from lumped.model.network import Network
 from lumped.model.quantities import AIR
 from lumped.model.sites import AXLE, ambient, outside, role, roleless, turning, turns
-from lumped.transfer.laws import Fixed, InputPower, Law, Power, Radiation as FourthPower
-from validation.effects.base import Effect, Scene, with_parameter
+from lumped.transfer.laws import Fixed, Law, Power, Radiation as FourthPower
+from validation.effects.base import PowerLaw, Scene, with_parameter
 from validation.effects.build import film_unit, to_fluid
 
 
-@dataclass(frozen=True)
-class AmbientFilm(Effect):
-    """Links from every face of a part on the ambient, or one from a bare node.
+class AmbientFilm(PowerLaw):
+    """Links from every face of a part on the ambient, or one from a bare node."""
 
-    follows : (quantity, reference value, exponent) of what the coefficient follows; none: it is constant
-    """
-
-    follows: ClassVar[tuple[tuple[str, float, float], ...]] = ()
     sits = "an outer part or face, with an ambient"
     unit = "W/m2/K"
 
     @classmethod
     def candidate_places(cls, scene: Scene) -> list[str]:
         return outside(scene.network)
-
-    def law(self, network: Network) -> Law:
-        """Of a coefficient of 1 (W/m2/K; W/K at a bare node) at the reference values."""
-        factors = tuple((network.signal(quantity), value, n) for quantity, value, n in self.follows)
-        return InputPower(1.0, factors) if factors else Fixed(1.0)
 
     def extend(self, network: Network) -> Network:
         air = str(ambient(network))
@@ -92,14 +79,12 @@ class Convection(AmbientFilm):
     kind = "convection"
     empirical = True
     title = "forced convection by vehicle wind"
-    at = "10 m/s"
     source = "McAdams 1954, turbulent flat plate, Nu ~ Re^0.8"
     isolating_test = "roll at two speeds with the motor off; blow on the face and shield it"
     typical = (5.0, 60.0)
     prior_sd = 30.0
     high = 300.0
     confused_with = ("convection.constant", "flow", "windage", "sensor.stem")
-    needs = ("vehicle_speed",)
     follows = (("vehicle_speed", 10.0, 0.8),)
 
 
@@ -110,14 +95,12 @@ class RotationConvection(AmbientFilm):
     empirical = True
     title = "cooling of a turning part to ambient"
     sits = "a turning part, with an ambient"
-    at = "1000 rpm"
     source = "rotating cylinder in still air, Nu = 0.133 Re^(2/3) Pr^(1/3) (Kays and Bjorklund 1958)"
     isolating_test = "cool down at several speeds without current"
     typical = (1.0, 60.0)
     prior_sd = 30.0
     high = 300.0
     confused_with = ("gap.convection", "loss.rotor")
-    needs = ("speed",)
     follows = (("speed", 1000.0, 0.7),)
 
     @classmethod
@@ -135,14 +118,12 @@ class FanConvection(AmbientFilm):
     empirical = True
     title = "air of a fan on the shaft over a standing face"
     sits = "a standing outer part off the axle, with no air flow recorded"
-    at = "1000 rpm"
     source = "fin channels and end shields of TEFC machines, h ~ v^0.8 (Staton and Cavagnino 2008), v ~ n"
     isolating_test = "cool down without current, once turning and once at rest; take the fan off"
     typical = (5.0, 60.0)
     prior_sd = 30.0
     high = 300.0
     confused_with = ("convection", "convection.constant", "convection.rotation", "windage")
-    needs = ("speed",)
     follows = (("speed", 1000.0, 0.8),)
 
     @classmethod

@@ -1,12 +1,9 @@
 """Surroundings at another temperature than recorded."""
 
-from dataclasses import dataclass
-
 from lumped.model.network import Network
 from validation.effects.base import Effect, Scene, with_parameter
 
 
-@dataclass(frozen=True)
 class AmbientOffset(Effect):
     """The machine feels a boundary temperature a (K) above the recorded one: recirculation, sun, sensor elsewhere."""
 

@@ -1,7 +1,6 @@
 """Films weaker than assumed, throughout or more and more: dirt, shelter, a blocked fan."""
 
 from collections.abc import Collection
-from dataclasses import dataclass
 
 import numpy as np
 
@@ -9,8 +8,8 @@ from geom.description.roles import Role
 from lumped.model.network import Link, Network
 from lumped.model.sites import boundaries, cell, part_of, standing_links
 from lumped.transfer.laws import Inputs
-from validation.effects.base import Effect, Scene, with_parameter
-from validation.effects.build import HOUR, Shaped, copy_link
+from validation.effects.base import Effect, Scene, WeakLinks, with_parameter
+from validation.effects.build import HOUR, Shaped, copy_elements
 
 
 def outer_films(network: Network, washing: Collection[str]) -> list[Link]:
@@ -30,24 +29,18 @@ def hours(inputs: Inputs) -> np.ndarray:
     return -(np.asarray(inputs["time_s"], float) - np.asarray(inputs["time_s"], float).flat[0]) / HOUR
 
 
-@dataclass(frozen=True)
-class WeakFilms(Effect):
-    """What may befall the films of one part."""
-
-    sits = "a part with a film to air or coolant"
-
-    @classmethod
-    def candidate_places(cls, scene: Scene) -> list[str]:
-        parts = dict.fromkeys(part_of(scene.network, p) for link in scene.network.links for p in link.places)
-        return [p for p in parts if p not in scene.network.boundaries and films(scene.network, p)]
+def parts_with_films(network: Network) -> list[str]:
+    parts = dict.fromkeys(part_of(network, p) for link in network.links for p in link.places)
+    return [p for p in parts if p not in network.boundaries and films(network, p)]
 
 
-class Fouling(WeakFilms):
+class Fouling(Effect):
     """Films of a part fade linearly with time: h = h0 (1 - a t / 1 h), a the fraction lost in one hour."""
 
     kind = "fouling"
     empirical = True
     title = "cooling fades during the test"
+    sits = "a part with a film to air or coolant"
     unit = "1/h"
     source = "definition: dust, icing, a loosening duct, a fan that slows down"
     isolating_test = "repeat the same test after cleaning; the first and last test of the day at the same load"
@@ -57,36 +50,34 @@ class Fouling(WeakFilms):
     confused_with = ("mass", "sensor.drift")
     needs = ("time",)
 
+    @classmethod
+    def candidate_places(cls, scene: Scene) -> list[str]:
+        return parts_with_films(scene.network)
+
     def extend(self, network: Network) -> Network:
-        names = []
-        for link in films(network, self.place):
-            names.append(f"{self.name}:{link.name}")
-            network = copy_link(network, link, names[-1], Shaped(link.law, hours, link.law.temperature, ("time_s",)))
-        return with_parameter(network, self.parameter(*names))
+        fading = films(network, self.place)
+        copies = {f"{self.name}:{x.name}": (x, Shaped.of(x.law, hours, "time_s")) for x in fading}
+        return with_parameter(copy_elements(network, copies), self.parameter(*copies))
 
 
-class Blockage(WeakFilms):
+class Blockage(WeakLinks):
     """Outer films of a part are weaker than assumed: h = h0 (1 + a), -0.95 <= a <= 0 (dirt, shelter, blocked fins)."""
 
     kind = "blockage"
     title = "cooling of a face is blocked"
-    unit = "1"
+    sits = "a part with a film to air or coolant"
     source = "definition; open fin channels lose flow along their length (Valenzuela and Tapia 2008)"
     isolating_test = "clean the fins; cool-down with the face freely exposed"
     typical = (-0.7, -0.1)
-    sign = -1
     prior_sd = 0.3
-    low = -0.95
-    high = 0.0
-    mapping = "relative"
     confused_with = ("fouling", "flow")
 
-    def films(self, network: Network) -> list[Link]:
-        """What it weakens."""
-        return films(network, self.place)
+    @classmethod
+    def candidate_places(cls, scene: Scene) -> list[str]:
+        return parts_with_films(scene.network)
 
-    def extend(self, network: Network) -> Network:
-        return with_parameter(network, self.parameter(*(link.name for link in self.films(network))))
+    def links(self, network: Network) -> list[Link]:
+        return films(network, self.place)
 
 
 class SharedBlockage(Blockage):
@@ -112,5 +103,5 @@ class SharedBlockage(Blockage):
         }
         return [boundary for boundary, some in parts.items() if len(some) > 1]
 
-    def films(self, network: Network) -> list[Link]:
+    def links(self, network: Network) -> list[Link]:
         return outer_films(network, {self.place})

@@ -1,29 +1,17 @@
 """Air inside the machine that carries more heat when the rotor turns: in the gap, and in the end spaces."""
 
-from dataclasses import dataclass
-from typing import ClassVar
-
 from geom.description.roles import Role
 from lumped.model.network import Network
 from lumped.model.sites import across_air, faces, fluids, solids, turns
-from lumped.transfer.laws import InputPower
-from validation.effects.base import Effect, Scene, with_parameter
+from validation.effects.base import PowerLaw, Scene, with_parameter
 from validation.effects.build import conductance_scale, exchange, films, place_pair
 
 
-@dataclass(frozen=True)
-class StirredAir(Effect):
-    """Films on every face of a fluid grow with speed: h = a (n / 1000 rpm)^exponent, a in W/m2/K at 1000 rpm."""
+class StirredAir(PowerLaw):
+    """Films on every face of a fluid grow with speed, a in W/m2/K at its reference."""
 
-    exponent: ClassVar[float]
     empirical = True
     unit = "W/m2/K"
-    at = "1000 rpm"
-    needs = ("speed",)
-
-    def law(self, network: Network) -> InputPower:
-        """Of a coefficient of 1 W/m2/K at 1000 rpm."""
-        return InputPower(1.0, ((network.signal("speed"), 1000.0, self.exponent),))
 
     def extend(self, network: Network) -> Network:
         parts = dict.fromkeys(p.part for p in network.places.values() if p.fluid == self.place)
@@ -44,7 +32,7 @@ class EndSpaceMixing(StirredAir):
     prior_sd = 20.0
     high = 300.0
     confused_with = ("flow", "convection")
-    exponent = 0.9
+    follows = (("speed", 1000.0, 0.9),)
 
     @classmethod
     def candidate_places(cls, scene: Scene) -> list[str]:
@@ -76,7 +64,7 @@ class GapConvection(StirredAir):
     prior_sd = 30.0
     high = 600.0
     confused_with = ("loss.rotor", "sensor.lag")
-    exponent = 0.5
+    follows = (("speed", 1000.0, 0.5),)
 
     @classmethod
     def candidate_places(cls, scene: Scene) -> list[str]:

@@ -10,8 +10,8 @@ from geom.constants import ALPHA_CU
 from geom.description.roles import Role
 from lumped.model.network import Network
 from lumped.model.sites import bearings, commutators, cores, heated, outside, role, turning, windings
-from lumped.transfer.laws import Conductivity, Fixed, InputPower, Inputs, Law, WithTemperature
-from validation.effects.base import Effect, Scene, with_parameter
+from lumped.transfer.laws import Conductivity, Fixed, Inputs, Law, WithTemperature
+from validation.effects.base import PowerLaw, Scene, with_parameter
 from validation.effects.build import Shaped, heat, power_scale
 
 SLOWEST_HZ = 500.0  # no inverter switches more slowly; on its way from 0 a recorded frequency passes below
@@ -43,16 +43,10 @@ def rippled_parts(network: Network) -> list[str]:
     return list(dict.fromkeys([*iron_parts(network), *turning(network)]))
 
 
-@dataclass(frozen=True)
-class AddedLoss(Effect):
-    """P = a times powers of what is recorded; a is the loss (W) where each has its reference value.
-
-    heats : the kind of loss it is ("copper", "iron", "friction", ...)
-    follows : (quantity, reference value, exponent) of each; none: a constant loss
-    """
+class AddedLoss(PowerLaw):
+    """P = a times powers of what is recorded, a in W.  heats : the kind of loss ("copper", "iron", "friction", ...)"""
 
     heats: ClassVar[str]
-    follows: ClassVar[tuple[tuple[str, float, float], ...]] = ()
     empirical = True
     unit = "W"
     prior_sd = 0.5
@@ -67,11 +61,6 @@ class AddedLoss(Effect):
     def candidate_places(cls, scene: Scene) -> list[str]:
         return cls.parts(scene.network)
 
-    def law(self, network: Network) -> Law:
-        """Of a loss of 1 W at the reference values."""
-        factors = tuple((network.signal(quantity), value, n) for quantity, value, n in self.follows)
-        return InputPower(1.0, factors) if factors else Fixed(1.0)
-
     def extend(self, network: Network) -> Network:
         source = heat(network, self.name, self.heats, self.place, self.law(network))
         parameter = self.parameter(source.name, scale=power_scale(network))
@@ -84,12 +73,10 @@ class BearingFriction(AddedLoss):
     kind = "bearing.friction"
     title = "bearing friction"
     sits = "a part with role bearing"
-    at = "1000 rpm"
     source = "Palmgren 1959: viscous moment ~ (nu n)^(2/3), so power ~ n^(5/3)"
     isolating_test = "back-driven spin, uncoupled; vary the grease temperature"
     typical = (5.0, 100.0)
     confused_with = ("windage", "iron")
-    needs = ("speed",)
     heats = "friction"
     follows = (("speed", 1000.0, 5.0 / 3.0),)
     parts = staticmethod(bearings)
@@ -101,12 +88,10 @@ class Windage(AddedLoss):
     kind = "windage"
     title = "windage"
     sits = "a turning part"
-    at = "1000 rpm"
     source = "Saari 1998, rotating cylinder, P ~ n^3 at constant friction factor"
     isolating_test = "spin at two gas pressures, or with the fan taken off"
     typical = (2.0, 100.0)
     confused_with = ("bearing.friction", "iron")
-    needs = ("speed",)
     heats = "windage"
     follows = (("speed", 1000.0, 3.0),)
     parts = staticmethod(turning)
@@ -118,12 +103,10 @@ class BrushDrop(AddedLoss):
     kind = "brush.drop"
     title = "brush contact drop"
     sits = "a part with role commutator"
-    at = "100 A"
     source = "carbon brushes, about 1 V per brush (IEC 60276)"
     isolating_test = "measure the drop across the brushes at standstill"
     typical = (50.0, 250.0)
     confused_with = ("brush.friction", "loss.winding")
-    needs = ("current",)
     heats = "brush"
     follows = (("current", 100.0, 1.0),)
     parts = staticmethod(commutators)
@@ -135,12 +118,10 @@ class BrushFriction(AddedLoss):
     kind = "brush.friction"
     title = "brush friction"
     sits = "a part with role commutator"
-    at = "1000 rpm"
     source = "Coulomb friction, mu 0.15 to 0.3, 15 to 25 kPa"
     isolating_test = "lift the brushes and spin"
     typical = (20.0, 300.0)
     confused_with = ("brush.drop", "bearing.friction", "windage")
-    needs = ("speed",)
     heats = "brush"
     follows = (("speed", 1000.0, 1.0),)
     parts = staticmethod(commutators)
@@ -166,12 +147,10 @@ class WindingLoss(AddedLoss):
     kind = "loss.winding"
     title = "copper loss larger than assumed"
     sits = "a winding with copper loss"
-    at = "100 A"
     source = "Joule's law"
     isolating_test = "four-wire resistance of the winding at a known temperature"
     typical = (10.0, 300.0)
     confused_with = ("copper.feedback", "copper.ac", "brush.drop")
-    needs = ("current",)
     heats = "copper"
     follows = (("current", 100.0, 2.0),)
     parts = staticmethod(loaded_windings)
@@ -191,7 +170,6 @@ class AcCopper(AddedLoss):
     isolating_test = "DC against AC at the same current"
     typical = (5.0, 300.0)
     confused_with = ("copper.feedback", "iron")
-    needs = ("speed", "current")
     heats = "copper.ac"
     follows = (("speed", 1000.0, 2.0), ("current", 100.0, 2.0))
     parts = staticmethod(stranded_windings)
@@ -206,12 +184,10 @@ class IronLoss(AddedLoss):
     kind = "iron"
     title = "iron loss growing with speed"
     sits = "a part with role iron or rotor, or one with iron loss"
-    at = "1000 rpm"
     source = "Steinmetz 1892, exponent 1 (hysteresis) to 2 (eddy current)"
     isolating_test = "back-driven spin without current, then with field current"
     typical = (20.0, 500.0)
     confused_with = ("bearing.friction", "windage", "copper.ac")
-    needs = ("speed",)
     heats = "iron"
     follows = (("speed", 1000.0, 1.5),)
     parts = staticmethod(iron_parts)
@@ -223,12 +199,10 @@ class MagnetLoss(AddedLoss):
     kind = "loss.rotor"
     title = "loss in rotor or magnets"
     sits = "a turning part"
-    at = "1000 rpm"
     source = "eddy currents in thin conductors, P ~ f^2"
     isolating_test = "spin without current and with a dummy rotor"
     typical = (5.0, 200.0)
     confused_with = ("iron", "windage", "bearing.friction")
-    needs = ("speed",)
     heats = "iron"
     follows = (("speed", 1000.0, 2.0),)
     parts = staticmethod(turning)
@@ -240,13 +214,11 @@ class RotorLoadLoss(AddedLoss):
     kind = "loss.rotor.load"
     title = "load-dependent loss in rotor or magnets"
     sits = "a turning part that is not a wound winding"
-    at = "1000 rpm and 100 A"
     source = "winding harmonics of the armature field, B ~ I; eddy currents in thin conductors, P ~ (f B)^2"
     isolating_test = "same speed at two currents; rotor temperature from back-EMF"
     typical = (1.0, 50.0)
     prior_sd = 0.1
     confused_with = ("loss.rotor", "iron", "copper.ac")
-    needs = ("speed", "current")
     heats = "iron"
     follows = (("speed", 1000.0, 2.0), ("current", 100.0, 2.0))
     parts = staticmethod(turning_unwound)

@@ -1,20 +1,17 @@
 """Copper that heats more when it is hot."""
 
-from dataclasses import dataclass
-
 from geom.constants import ALPHA_CU
 from lumped.model.network import Network, Source
 from lumped.model.sites import windings
 from lumped.sources.loss_laws import EDDY
 from lumped.transfer.laws import CONSTANT, Linear, Scaled, WithTemperature
 from validation.effects.base import Effect, Scene, with_parameter
-from validation.effects.build import copy_source
+from validation.effects.build import copy_element, label
 
 REFERENCE = 20.0  # degC, of losses that name no temperature at which they hold
 UNSAID = ("constant", "stray")  # kinds that say nothing of how a loss comes about: in a winding it is copper's
 
 
-@dataclass(frozen=True)
 class CopperFeedback(Effect):
     """Missing temperature feedback of a copper loss: P = P0 (1 + a (T - T0)), a in 1/K.
 
@@ -36,13 +33,11 @@ class CopperFeedback(Effect):
 
     @classmethod
     def candidate_places(cls, scene: Scene) -> list[str]:
-        copper = [s.name for s in _constant_copper(scene.network)]
-        first = [c for c in copper if _winding(scene.network, c)[0] == c]
-        return [c.split(":", 1)[-1] for c in first]
+        return [label(s) for s in _constant_copper(scene.network) if _winding(scene.network, s.name)[0] == s.name]
 
     def extend(self, network: Network) -> Network:
         mine, names = {s.name: s for s in network.sources}, []
-        place = next(n for n in mine if n.split(":", 1)[-1] == self.place)
+        place = next(s.name for s in network.sources if label(s) == self.place)
         for source in (mine[n] for n in _winding(network, place)):
             reference, end = _reference(source) or REFERENCE, "" if source.name == place else f":{source.name}"
             # Eddy currents fall as the resistance rises: to first order in a, what is copied turns its sign.
@@ -50,8 +45,8 @@ class CopperFeedback(Effect):
             for part, sign, tail in [(source, 1.0, end), *eddy]:
                 names += [f"{self.name}:rise{tail}", f"{self.name}:base{tail}"]
                 law = WithTemperature(Scaled(part.law, sign), Linear(1.0, reference))
-                network = copy_source(network, part, names[-2], law)
-                network = copy_source(network, part, names[-1], WithTemperature(Scaled(part.law, -sign)))
+                network = copy_element(network, part, names[-2], law)
+                network = copy_element(network, part, names[-1], WithTemperature(Scaled(part.law, -sign)))
         return with_parameter(network, self.parameter(*names))
 
 

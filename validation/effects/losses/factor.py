@@ -1,20 +1,16 @@
 """A declared loss that is off by a factor."""
 
-from dataclasses import dataclass
-
 from lumped.model.network import Network
 from lumped.sources.loss_laws import declared_name
 from validation.effects.base import Effect, Scene, with_parameter
 
 
-@dataclass(frozen=True)
 class LossFactor(Effect):
     """P = P0 (1 + a) of one declared loss, in proportion at all loads."""
 
     kind = "loss.factor"
     title = "a declared loss is off by a factor"
     sits = "a declared loss"
-    unit = "1"
     source = "definition: a loss map of another machine, a wrong number of phases or of watts per phase"
     isolating_test = "no-load and locked-rotor runs with a power meter"
     typical = (-0.5, 1.0)

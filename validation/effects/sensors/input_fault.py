@@ -3,16 +3,17 @@
 from abc import abstractmethod
 from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import ClassVar
 
 import numpy as np
 
 from lumped.model.network import Link, Network, Source
 from lumped.model.quantities import INPUTS
 from lumped.model.sites import standing_links, standing_sources
-from lumped.transfer.laws import Array, Inputs, Law, Wrapped
+from lumped.transfer.laws import Array, Inputs, Wrapped
 from lumped.transfer.ranges import within_silence
 from validation.effects.base import Effect, Scene, with_parameter
-from validation.effects.build import copy_link, copy_source
+from validation.effects.build import copy_elements
 
 COUNTED = ("speed", "frequency")  # by encoder or clock: a wrong number of pulses is a factor, and seen at once
 FACTOR_STEP = 0.1  # of the input: a chord as wide as such faults are
@@ -54,12 +55,11 @@ class Shift(Chord):
         return h, u + h, u - h
 
 
-@dataclass(frozen=True)
 class InputFault(Effect):
-    """A copy of every link and loss that reads the input, with the chord of its law."""
+    """A copy of every link and loss that reads the input, with the chord of its law along this error."""
 
+    chord: ClassVar[type[Chord]]
     sits = "an input that a law of the network reads, but none that is counted (speed, frequency)"
-    unit = "1"
     source = "definition; the laws that read it follow it"
     sign = 0
     fault = True
@@ -70,23 +70,14 @@ class InputFault(Effect):
         names = dict.fromkeys(name for name, _ in read(scene.network))
         return [n for n in names if n in scene.inputs and scene.network.measures(n) not in COUNTED]
 
-    @abstractmethod
-    def chord_of(self, law: Law) -> Law:
-        """The chord of a law along this error."""
-
     def unit_of(self, network: Network) -> str:
         """Of its parameter."""
         return self.unit
 
     def extend(self, network: Network) -> Network:
-        names, unit = [], self.unit_of(network)
-        for x in [x for name, x in read(network) if name == self.place]:
-            names.append(f"{self.name}:{x.name}")
-            if isinstance(x, Link):
-                network = copy_link(network, x, names[-1], self.chord_of(x.law))
-            else:
-                network = copy_source(network, x, names[-1], self.chord_of(x.law))
-        return with_parameter(network, self.parameter(*names, unit=unit))
+        followers = [x for name, x in read(network) if name == self.place]
+        copies = {f"{self.name}:{x.name}": (x, self.chord(x.law, self.place)) for x in followers}
+        return with_parameter(copy_elements(network, copies), self.parameter(*copies, unit=self.unit_of(network)))
 
 
 def read(network: Network) -> list[tuple[str, Link | Source]]:
@@ -106,9 +97,7 @@ class InputFactor(InputFault):
     low = -0.9
     high = 3.0
     confused_with = ("flow", "loss.winding", "loss.factor")
-
-    def chord_of(self, law: Law) -> Law:
-        return Slope(law, self.place)
+    chord = Slope
 
 
 class InputOffset(InputFault):
@@ -125,9 +114,7 @@ class InputOffset(InputFault):
     low = -0.5
     high = 0.5
     confused_with = ("input.factor", "loss.constant")
-
-    def chord_of(self, law: Law) -> Law:
-        return Shift(law, self.place)
+    chord = Shift
 
     def unit_of(self, network: Network) -> str:
         return INPUTS.get(network.measures(self.place), "_1").rpartition("_")[2]

@@ -1,7 +1,6 @@
 """Faults of what one sensor says; the machine is as warm as before."""
 
 from collections.abc import Iterable, Iterator
-from dataclasses import dataclass
 from typing import ClassVar
 
 from lumped.model.network import Network
@@ -9,7 +8,6 @@ from lumped.model.sites import ambient
 from validation.effects.base import Effect, Scene, with_parameter
 
 
-@dataclass(frozen=True)
 class ReadingFault(Effect):
     """changes : which part of a reading, as targets of parameters name it ("bias", "gain", "lag", ...)"""
 
@@ -65,7 +63,6 @@ class SensorGain(ReadingFault):
 
     kind = "sensor.gain"
     title = "sensor reads a wrong slope"
-    unit = "1"
     source = "definition; wrong thermocouple type gives tens of percent"
     isolating_test = "compare with a reference sensor at two temperatures"
     typical = (-0.2, 0.2)
@@ -99,7 +96,6 @@ class SensorStem(ReadingFault):
 
     kind = "sensor.stem"
     title = "stem conduction pulls the reading to ambient"
-    unit = "1"
     source = "fin equation of the leads, a = h-dependent share (VDI/VDE 3511)"
     isolating_test = "insulate or anneal the leads; a second sensor with thinner wires"
     typical = (0.02, 0.2)
@@ -116,7 +112,6 @@ class SensorLoose(ReadingFault):
 
     kind = "sensor.loose"
     title = "sensor has come loose"
-    unit = "1"
     source = "definition: between the part and the air, it reads a mean of both"
     isolating_test = "look at the sensor; read the part with a second one"
     typical = (0.1, 1.0)
@@ -174,7 +169,6 @@ class Swap(ReadingFault):
     kind = "sensor.swap"
     title = "two channels are exchanged"
     sits = "two measured temperatures"
-    unit = "1"
     source = "definition"
     isolating_test = "warm one sensor by hand"
     typical = (1.0, 1.0)

@@ -1,6 +1,6 @@
 """Coolant that reaches further than assumed."""
 
-from dataclasses import dataclass
+from itertools import chain
 
 from geom.description.roles import Role
 from lumped.model.network import Network
@@ -24,7 +24,6 @@ def reached(network: Network, place: str) -> list[str]:
     return [fluid for fluid in coolants(network) if place in washed(network, fluid)] or beside or coolants(network)
 
 
-@dataclass(frozen=True)
 class CoolantLink(Effect):
     """Extra heat transfer a to the coolant (W/m2/K on wetted faces, W/K at a bare node)."""
 
@@ -51,11 +50,7 @@ class CoolantLink(Effect):
         touching = reached(network, self.place)
         unit, scale = film_unit(network, self.place, touching[0])
         names = [self.name] if len(touching) == 1 else [f"{self.name}:{fluid}" for fluid in touching]
-        links = [
-            x
-            for name, fluid in zip(names, touching, strict=True)
-            for x in to_fluid(network, name, self.place, fluid, Fixed(1.0))
-        ]
-        return with_parameter(
-            network.extended(links=links), self.parameter(*(link.name for link in links), scale=scale, unit=unit)
-        )
+        each = [to_fluid(network, n, self.place, x, Fixed(1.0)) for n, x in zip(names, touching, strict=True)]
+        links = list(chain(*each))
+        parameter = self.parameter(*(link.name for link in links), scale=scale, unit=unit)
+        return with_parameter(network.extended(links=links), parameter)

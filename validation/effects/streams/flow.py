@@ -9,8 +9,8 @@ from lumped.model.network import Link, Network, Parameter
 from lumped.model.quantities import AIR, LIQUID
 from lumped.model.sites import cell, model_links
 from lumped.transfer.laws import RUNNING, Inputs
-from validation.effects.base import Effect, Scene, with_parameter
-from validation.effects.build import Shaped, copy_link
+from validation.effects.base import Effect, Scene, WeakLinks, with_parameter
+from validation.effects.build import Shaped, copy_elements, label
 
 PARTS = (25, 50, 75)  # percent of the test after which a fan or pump may have stopped
 
@@ -34,14 +34,12 @@ def _acts_as_flow(network: Network, links: Mapping[str, Link], p: Parameter) -> 
     return all(streams) and all(films)
 
 
-@dataclass(frozen=True)
 class Flow(Effect):
     """A flow that differs from the stated one: V = V0 (1 + a), with everything that follows the flow."""
 
     kind = "flow"
     title = "fan or coolant flow differs from the stated one"
     sits = "a declared flow"
-    unit = "1"
     source = "definition; films follow the flow with the exponents the network declares"
     isolating_test = "measure the flow; inlet and outlet temperature at constant loss; run with the fan off"
     typical = (-0.5, 0.7)
@@ -65,32 +63,25 @@ def streams(network: Network) -> list[Link]:
     return [link for link in model_links(network) if link.kind == "stream" and not cell(network, link.places[1])]
 
 
-@dataclass(frozen=True)
-class AirLeak(Effect):
+class AirLeak(WeakLinks):
     """A share of a fluid stream passes by: m = m0 (1 + a), -0.95 <= a <= 0, films on the rest unchanged."""
 
     kind = "bypass"
     empirical = True
     title = "part of the stream passes by"
     sits = "a stream"
-    unit = "1"
     source = "mass balance of the stream"
     isolating_test = "inlet and outlet temperature at constant loss; flow sweep"
     typical = (-0.6, -0.1)
-    sign = -1
     prior_sd = 0.3
-    low = -0.95
-    high = 0.0
-    mapping = "relative"
     confused_with = ("flow",)
 
     @classmethod
     def candidate_places(cls, scene: Scene) -> list[str]:
-        return [link.name.split(":", 1)[-1] for link in streams(scene.network)]
+        return [label(link) for link in streams(scene.network)]
 
-    def extend(self, network: Network) -> Network:
-        names = [link.name for link in streams(network) if link.name.split(":", 1)[-1] == self.place]
-        return with_parameter(network, self.parameter(*names))
+    def links(self, network: Network) -> list[Link]:
+        return [link for link in streams(network) if label(link) == self.place]
 
 
 @dataclass(frozen=True)
@@ -106,14 +97,12 @@ class Stopped:
         return -np.where(late, np.asarray(inputs.get(f"{RUNNING}{self.test}", 0.0), float), 0.0)
 
 
-@dataclass(frozen=True)
 class FanStop(Effect):
     """What a flow carries off falls to 1 - a of it at one instant of one test. Place: "FLOW:TEST:50", in percent."""
 
     kind = "fan.stop"
     title = "fan or pump stops during a test"
     sits = "a declared flow"
-    unit = "1"
     source = "definition: a tripped breaker, a slipped hose"
     isolating_test = "read the flow, or listen; repeat the test"
     typical = (0.3, 1.0)
@@ -131,10 +120,7 @@ class FanStop(Effect):
         which, part = self.place.rsplit(":", 1)
         original = next(p for p in flows(network) if which.startswith(f"{p.name}:"))
         test = which.removeprefix(f"{original.name}:")
-        new = []
-        targets = {t for t, _ in original.targets}
-        for link in [x for x in model_links(network) if x.name in targets]:
-            new.append(f"{self.name}:{link.name}")
-            law = Shaped(link.law, Stopped(test, int(part)), link.law.temperature, ("time_s",))
-            network = copy_link(network, link, new[-1], law)
-        return with_parameter(network, self.parameter(*new))
+        stop, targets = Stopped(test, int(part)), {t for t, _ in original.targets}
+        mine = [x for x in model_links(network) if x.name in targets]
+        copies = {f"{self.name}:{x.name}": (x, Shaped.of(x.law, stop, "time_s")) for x in mine}
+        return with_parameter(copy_elements(network, copies), self.parameter(*copies))

@@ -47,8 +47,7 @@ class NozzleBlockage(Blockage):
     def candidate_places(cls, scene: Scene) -> list[str]:
         return list(dict.fromkeys(part_of(scene.network, link.places[0]) for link in sprayed(scene.network)))
 
-    def films(self, network: Network) -> list[Link]:
-        """What it weakens."""
+    def links(self, network: Network) -> list[Link]:
         return [link for link in sprayed(network) if part_of(network, link.places[0]) == self.place]
 
 
@@ -67,5 +66,5 @@ class AllNozzles(NozzleBlockage):
         pairs = [(inlet(network, link), part_of(network, link.places[0])) for link in sprayed(network)]
         return [first for first in dict.fromkeys(x for x, _ in pairs) if len({p for x, p in pairs if x == first}) > 1]
 
-    def films(self, network: Network) -> list[Link]:
+    def links(self, network: Network) -> list[Link]:
         return [link for link in sprayed(network) if inlet(network, link) == self.place]
