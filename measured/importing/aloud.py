@@ -18,6 +18,7 @@ from measured.importing.guess import (
     AS_WINDING,
     BY_LETTERS,
     BY_READINGS,
+    CANNOT_BE,
     CERTAIN,
     CODES_ALONE,
     ELSE,
@@ -28,7 +29,6 @@ from measured.importing.guess import (
     OF_INSTRUMENT,
     OF_SENSOR,
     OF_USER,
-    THAT_CAN_BE,
     UNKNOWN,
     UNTOLD,
     WHOLE,
@@ -58,7 +58,7 @@ WEAK = (
     "gives coolant already",
 )
 STAY = ("stays in the file as a check, and feeds nothing", "stay in the file as checks, and feed nothing")
-BROKEN = (THAT_CAN_BE, CODES_ALONE, OF_INSTRUMENT)  # of temperatures, which were expected to be read
+BROKEN = (CANNOT_BE, CODES_ALONE, OF_INSTRUMENT)  # of temperatures, which were expected to be read
 
 
 def first_lines(drafts: Sequence[Draft]) -> list[str]:

@@ -88,7 +88,7 @@ UNTOLD = "neither name nor unit tells what it is"
 FOREIGN = re.compile(r"\[([^\]]*[A-Za-z°µ%][^\]]*)\]\s*$")  # what stands in brackets as units do
 ROUND = re.compile(r"\(([^()]*[A-Za-z°µ%][^()]*)\)\s*$")  # or remarks
 IN_HEADER = "in its header,"  # another unit than by its values
-THAT_CAN_BE, CODES_ALONE = "that can be", "holds nothing but a logger's codes"
+CANNOT_BE, CODES_ALONE = "cannot be right", "holds nothing but a logger's codes"
 OF_INSTRUMENT = "of the instrument itself or another device, by its name"
 OF_DEVICE = "no part of a motor by its name; it warms most"
 DEMAND = "a set point, no reading: taken as reached"
@@ -462,7 +462,7 @@ def _impossible(source: Source, g: Guess) -> str:
     if not finite.size:
         return CODES_ALONE
     worst = finite[np.argmax(np.maximum(low - finite, finite - high))]
-    return "" if low <= worst <= high else f"{worst:.4g} is not a {g.quantity.replace('_', ' ')} {THAT_CAN_BE}"
+    return "" if low <= worst <= high else f"{worst:.4g} as {g.quantity.replace('_', ' ')} {CANNOT_BE}"
 
 
 def _in_fahrenheit(source: Source, every: list[Guess]) -> list[Guess]:

@@ -248,9 +248,9 @@ def wrong_base() -> Section:
             "yes" if h.declared else "",
             f"{h.deviance:.1f}",
             "excluded" if h.excluded else "possible",
-            f"{h.heat.conduction:.0f}",
-            f"{h.heat.convection:.0f}",
-            f"{h.heat.radiation:.0f}",
+            f"{h.heat.conduction:z.0f}",
+            f"{h.heat.convection:z.0f}",
+            f"{h.heat.radiation:z.0f}",
         )
         for h in tried()
         if h.test in BASE_TESTS

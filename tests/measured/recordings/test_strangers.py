@@ -754,7 +754,7 @@ def test_one_bad_reading_costs_one_reading_whatever_the_span_of_its_column(tmp_p
 def test_a_temperature_that_cannot_be_stands_in_the_first_line(tmp_path, capsys):
     text = table("t [s],Tmotor [°C],T_case [°C],I [A]", S["t"], np.where(S["t"] == 50, -400.0, S["W"]), S["H"], S["I"])
     written(tmp_path, text)
-    assert capsys.readouterr().out.startswith("'Tmotor [°C]' is left out: -400 is not a temperature")
+    assert capsys.readouterr().out.startswith("'Tmotor [°C]' is left out: -400 as temperature cannot be right")
 
 
 @pytest.mark.parametrize(
