@@ -191,7 +191,18 @@ def _with_copies(
     if not copies:
         return network
     acts, why = tuple((copy, 1.0) for copy in copies), "scatter of published exponents"
-    new = Parameter(name, acts, 0.0, unit, -2.5 * sd, 2.5 * sd, sd, "amplitude", 0.0, source=why)
+    new = Parameter(
+        name,
+        acts,
+        value=0.0,
+        unit=unit,
+        low=-2.5 * sd,
+        high=2.5 * sd,
+        prior_sd=sd,
+        mapping="amplitude",
+        neutral=0.0,
+        source=why,
+    )
     return with_parameter(copy_elements(network, copies), new)
 
 

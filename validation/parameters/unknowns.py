@@ -158,7 +158,18 @@ def _sensor(network: Network, same: Sequence[Channel], doubt: Doubt) -> list[Par
 
 
 def _offset(name: str, target: str, sd: float, source: str, unit: str = "K") -> Parameter:
-    return Parameter(name, ((target, 1.0),), 0.0, unit, -POSSIBLE * sd, POSSIBLE * sd, sd, "offset", 0.0, source=source)
+    return Parameter(
+        name,
+        ((target, 1.0),),
+        value=0.0,
+        unit=unit,
+        low=-POSSIBLE * sd,
+        high=POSSIBLE * sd,
+        prior_sd=sd,
+        mapping="offset",
+        neutral=0.0,
+        source=source,
+    )
 
 
 def scene_of(case: Case) -> Scene:
