@@ -76,7 +76,7 @@ def forcing(
         heats, inputs = [(c, missed * PARABOLA, 0.0) for c in curves], [straight(x) for x in source.values()]
         more = [*((c, 0.0, missed * PARABOLA_K) for c in ends), *((x, missed * PARABOLA, 0.0) for x in inputs)]
         indices, wholes = _needed(t, [*heats, *more], np.zeros(t.size, bool))
-    elif merged and t.size > time.size:
+    elif merged and signals.source and t.size > time.size:
         heats = [(c, merged, 0.0 if acts else np.inf) for c, acts in zip(curves, acting, strict=True)]
         indices, wholes = _needed(t, heats, sample >= 0)
         wholes += [NONE] * len(ends)
