@@ -66,7 +66,7 @@ def forcing(
     if at.size > time.size:
         source = signals.finer(at)
         curves = [source.curve(p.name, p.law) for p in patterns]
-        t, u = between(time, at), np.stack([between(x, at) for x in u.T], axis=1).reshape(at.size, -1)
+        t, u = between(time, at), _boundaries_between(u, at)
     ends = [straight(x) for x in u.T]
     indices, wholes = np.arange(t.size), [NONE] * (len(curves) + len(ends))
     if not every_sample:
@@ -92,8 +92,12 @@ def forcing(
 
 def with_boundaries(drive: Forcing, at: Array, u: Array) -> Forcing:
     """The same with other boundaries (nt, nb), linear between the samples, where its knots are at some positions."""
-    there = np.stack([between(x, at) for x in u.T], axis=1).reshape(at.size, -1)
+    there = _boundaries_between(u, at)
     return drive._replace(u=there, arch=np.zeros_like(there))
+
+
+def _boundaries_between(u: Array, at: Array) -> Array:
+    return np.stack([between(x, at) for x in u.T], axis=1).reshape(at.size, -1)
 
 
 def _needed(time: Array, curves: Sequence[tuple[Curve, float, float]], fixed: Mask) -> tuple[Ints, list[Array]]:

@@ -11,14 +11,13 @@ from pathlib import Path
 from typing import Any
 
 from geom.description.roles import Role
-from measured.headers.cells import EMPTY, is_date, is_reading, is_unit, number, split_unit, unit_of
+from measured.headers.cells import EMPTY, TIMES, is_date, is_reading, is_unit, number, split_unit, unit_of
 from measured.headers.layout import MISSING
 from measured.headers.words import RUNS, VOCABULARY, is_time, quantities_of, roles_of, tokens
 
 SERIES, VALUES = (frozenset(VOCABULARY["words"][name].split()) for name in ("series", "value"))
 MOST = 200  # signals in such a table
 RARE = 10  # readings of the other signals, beside which one alone is none
-CLOCK_UNITS = ("s", "ms", "min", "h")
 LEAST = 3  # readings of a signal, on average
 HOLD = "hold until the next reading"
 BOUNDARIES = ([Role.AMBIENT], [Role.COOLANT])
@@ -32,12 +31,9 @@ def side_by_side(
     Signals with times of their own hold from each of them to the next, as homes and controllers log what changes;
     temperatures of parts go on between them.
     """
-    times = [
-        j
-        for j, name in enumerate(names)
-        if (is_time(name) or unit_of(name) in CLOCK_UNITS or all(map(is_date, columns[j][:LEAST])))
-        and len(set(columns[j])) > 1
-    ]
+    varying = [j for j, cells in enumerate(columns) if len(set(cells)) > 1]
+    times = [j for j in varying if is_time(names[j]) or all(map(is_date, columns[j][:LEAST]))]
+    times = times or [j for j in varying if unit_of(names[j]) in TIMES]  # beside a clock "min" is the least
     ids = [j for j, name in enumerate(names) if {"id", *SERIES} & {*tokens(name)} > {"id"}]  # sensor_id
     numbered = [j for j in ids if all(map(is_reading, columns[j]))]
     columns = [[f"{number(c):g}" for c in cells] if j in numbered else cells for j, cells in enumerate(columns)]

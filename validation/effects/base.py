@@ -14,8 +14,19 @@ from lumped.transfer.laws import CLOCK, Fixed, InputPower, Law
 Interval = tuple[float, float]
 NOTHING: Interval = (0.0, 0.0)
 # In which reference values are stated
-UNITS = {"speed": "rpm", "vehicle_speed": "m/s", "current": "A", "torque": "Nm", "power": "W", "voltage": "V"}
-UNITS |= {"frequency": "Hz", "air_flow": "m3/h", "water_flow": "l/min", "share": "%", "flow_share": "%"}
+UNITS = {
+    "speed": "rpm",
+    "vehicle_speed": "m/s",
+    "current": "A",
+    "torque": "Nm",
+    "power": "W",
+    "voltage": "V",
+    "frequency": "Hz",
+    "air_flow": "m3/h",
+    "water_flow": "l/min",
+    "share": "%",
+    "flow_share": "%",
+}
 
 
 @dataclass(frozen=True)

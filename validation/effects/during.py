@@ -14,8 +14,23 @@ from validation.effects.base import Effect, Scene, with_parameter
 from validation.effects.build import Shaped, copy_elements
 from validation.effects.time_window import ALIKE, IN, Event, TimeWindow, event, odd_tests
 
-SAME = ["kind", "title", "unit", "at", "source", "isolating_test", "typical", "confused_with", "needs"]
-SAME += ["sign", "low", "high", "neutral", "fault", "empirical"]
+SAME = (
+    "kind",
+    "title",
+    "unit",
+    "at",
+    "source",
+    "isolating_test",
+    "typical",
+    "sign",
+    "low",
+    "high",
+    "neutral",
+    "confused_with",
+    "needs",
+    "fault",
+    "empirical",
+)
 
 
 @dataclass(frozen=True)

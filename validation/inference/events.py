@@ -59,7 +59,6 @@ from validation.inference.score import (
 from validation.noise import Noise
 
 Values = Mapping[str, float]
-Spans = Mapping[str, Sequence[Span]]
 GRID_POINTS = 15  # instants around each end
 COARSEST = 4.0  # timing steps between instants that tell one stretch from another; what carries weight is timed closer
 DIRECTIONS = ((1, 0), (0, 1), (1, 1))  # begin, end, both
@@ -111,12 +110,13 @@ def timed_event(
     fit, tests = evidence.fit, {t.name: t for t in evidence.tests}
     grams = event_grams(fit, evidence.tests, base, event, values)
     every = [(t, i) for t, pairs in spans.items() for i in range(len(pairs))]
-    for test, i in sorted(every, key=lambda at: -float(np.ptp(spans[at[0]][at[1]]))):
+    order = sorted(every, key=lambda at: -float(np.ptp(spans[at[0]][at[1]])))
+    for n, (test, i) in enumerate(order):
         others = [s for k, s in enumerate(spans[test]) if k != i]
         elsewhere = [g for t, g in grams.items() if t != test]
         span, area = timed_span(fit, base, tests[test], spans[test][i], others, elsewhere, reach_s[test], values)
         spans[test][i], log_area[test, span] = span, area
-        if len(spans) > 1:
+        if any(later != test for later, _ in order[n + 1 :]):  # whose ends these are beside
             grams |= event_grams(fit, [tests[test]], base, Event.of({test: spans[test]}), values)
     return TimedEvent(Event.of(spans), log_area, {t: float(np.ptp(tests[t].time)) for t in spans})
 

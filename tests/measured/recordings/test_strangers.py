@@ -343,6 +343,15 @@ def test_signals_with_times_of_their_own_hold_until_the_next(tmp_path, stamp):
     assert np.array_equal(current[1:], np.select([t[1:] < 51, t[1:] < 121], [0.0, 9.0], 2.0))
 
 
+def test_the_least_of_a_reading_is_no_clock_beside_one(tmp_path):
+    parts = (("T_winding", S["W"]), ("T_room", S["A"]))
+    rows = [f"{t},{name},{v[k]:.2f},{v[k] - 1:.2f}" for k, t in enumerate(S["t"]) for name, v in parts]
+    (tmp_path / "a.csv").write_text("\n".join(["time_s,sensor,value,min", *rows]) + "\n")
+    source = read_source(tmp_path / "a.csv")
+    assert [*source.cells] == ["time_s", "T_winding", "T_room"]
+    assert clock_of(source).seconds == pytest.approx(S["t"])
+
+
 def test_a_second_file_says_what_numbers_and_short_names_mean(tmp_path):
     """A table of sensors beside their readings; a list of columns beside them."""
     rows = [f"{k},{n},{v[k]:.2f}" for k in range(len(S["t"])) for n, v in ((1, S["W"]), (2, S["A"]), (3, S["I"]))]
