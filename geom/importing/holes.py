@@ -204,6 +204,22 @@ def _m63(place: Place, d: Sizes) -> Hole:
     return Hole((loop_through([(a - d["H0"]).conjugate(), (a.conjugate(), up), a, a - d["H0"]]),), ())
 
 
+def _lsrpm(place: Place, d: Sizes) -> Hole:
+    """One magnet that is narrower at its foot, with air at either end, all four corners of the hole rounded."""
+    r, foot, side = d["R1"], d["R3"], cmath.exp(-1j * d["W1"])
+    c1 = (foot + r) * cmath.exp(1j * (math.asin((r + d["W2"]) / (r + foot)) - d["W1"]))
+    z1, start = c1 * foot / abs(c1), 1j * d["W2"] * side
+    z2 = start + ((c1 - start) / side).real * side
+    z3 = on_circle(start, start + side, d["R2"])[0]
+    z5 = place.radius - d["H1"] - 0.5j * d["W0"]
+    z4 = min((_touch(z3, z5 - r, r, sign) for sign in (1, -1)), key=lambda z: z.imag)
+    lower: list[Point | complex] = [(z1, arc(z1, z2, c1)), z2, z3]
+    upper: list[Point | complex] = [z3.conjugate(), (z2.conjugate(), arc(z1, z2, c1))]
+    low = loop_through([*lower, *upper, (z1.conjugate(), arc(z1.conjugate(), z1))])
+    tip = [(z4, arc(z4, z5, z5 - r)), z5, (z5.conjugate(), arc(z4, z5, z5 - r)), z4.conjugate()]
+    return Hole((loop_through([z3, z4, z4.conjugate(), z3.conjugate()]),), (low, loop_through(tip)))
+
+
 HOLES: dict[str, Callable[[Place, Sizes], Hole]] = {
     "HoleM50": _m50,
     "HoleM51": _m51,
@@ -216,4 +232,5 @@ HOLES: dict[str, Callable[[Place, Sizes], Hole]] = {
     "HoleM61": _m61,
     "HoleM62": _m62,
     "HoleM63": _m63,
+    "HoleMLSRPM": _lsrpm,
 }

@@ -320,7 +320,8 @@ def _stator(draft: Draft, stator: Lamination) -> tuple[float, float]:
     draft.take("geometry.stator", "stator.slot.Zs", slots=copies)
     draft.draw("slots", f"stator.slot, {kind}", copies, [slot.path])
     draft.draw("wires", f"stator.slot, {kind}: what the winding fills", copies, slot.filled)
-    _vents(draft, stator, "stator", "vents")
+    for vent in _vents(stator, "stator"):
+        draft.draw("vents", vent.source, vent.copies, vent.loops)
     room = sum(abs(loop_area(loop)) for loop in slot.filled)
     fill, count, section = _fill(draft, stator, "stator", "winding", copies, room)
     winding = stator.node["winding"]
@@ -351,13 +352,25 @@ def _stacking(draft: Draft, lamination: Lamination, name: str) -> None:
         draft.leave(f"{name}.Kf1", factor, "iron as drawn; the stacking factor lies in the material's density")
 
 
-def _vents(draft: Draft, lamination: Lamination, name: str, group: str) -> None:
+@dataclass(frozen=True)
+class Cut:
+    """Holes through a lamination, so often around it."""
+
+    source: str
+    copies: int
+    loops: tuple[Loop, ...]
+
+
+def _vents(lamination: Lamination, name: str) -> Iterator[Cut]:
     for k, vent in enumerate(_parts(lamination.node, "axial_vent", lamination.where)):
         where = f"{lamination.where}.axial_vent[{k}]"
         sizes, kind = _sizes(vent, where), str(vent.get("__class__"))
-        loop = _shape(kind, VENTS, where, partial(VENTS.get(kind, rotate), sizes))
-        copies = _copies(vent, "Zh", where)
-        draft.draw(group, f"{name}.axial_vent[{k}], {kind}", copies, [rotate(loop, sizes.get("Alpha0", 0.0))])
+        if kind == "HoleUD":
+            loops = _surface_hole(vent, where).air
+        else:
+            loops = (_shape(kind, (*VENTS, "HoleUD"), where, partial(VENTS.get(kind, rotate), sizes)),)
+        copies, turn = _copies(vent, "Zh", where), sizes.get("Alpha0", 0.0)
+        yield Cut(f"{name}.axial_vent[{k}], {kind}", copies, tuple(rotate(loop, turn) for loop in loops))
 
 
 def _vent_circle(d: Mapping[str, float]) -> Loop:
@@ -380,9 +393,12 @@ VENTS = {"VentilationCirc": _vent_circle, "VentilationPolar": _vent_polar, "Vent
 def _rotor(draft: Draft, rotor: Lamination, stator: Lamination) -> None:
     node, top = rotor.node, rotor.outer
     _checked_class(rotor, ROTORS)
-    for key in HOLE_KEYS:
-        for k, hole in enumerate(_parts(node, key, rotor.where)):
-            _hole(draft, rotor, hole, key, k)
+    holes = [(key, k, hole) for key in HOLE_KEYS for k, hole in enumerate(_parts(node, key, rotor.where))]
+    cuts = [_hole(draft, rotor, hole, key, k) for key, k, hole in holes] + [*_vents(rotor, "rotor")]
+    for copies in dict.fromkeys(cut.copies for cut in cuts):
+        some = [cut for cut in cuts if cut.copies == copies]  # as one: ducts may be drawn across holes
+        loops = unite([loop for cut in some for loop in cut.loops])
+        draft.draw("pockets", "; ".join(cut.source for cut in some), copies, loops)
     magnet = next((node[key] for key in ("magnet", "magnet_north") if isinstance(node.get(key), Mapping)), None)
     if isinstance(node.get("slot"), Mapping):
         slot, copies, kind = _slot(rotor)
@@ -396,7 +412,6 @@ def _rotor(draft: Draft, rotor: Lamination, stator: Lamination) -> None:
             _cage(draft, rotor, slot, copies, kind)
         elif isinstance(node.get("winding"), Mapping):
             _coils(draft, rotor, slot, copies, kind)
-    _vents(draft, rotor, "rotor", "pockets")
     gap = stator.inner - top
     if not 0.2e-3 <= gap <= 20e-3:
         right = f"stator.Rint = {stator.inner:g} m at least 0.2 mm and at most 20 mm beyond it"
@@ -409,8 +424,8 @@ def _rotor(draft: Draft, rotor: Lamination, stator: Lamination) -> None:
     _stacking(draft, rotor, "rotor")
 
 
-def _hole(draft: Draft, rotor: Lamination, node: Node, key: str, k: int) -> None:
-    """Every pole has it, or with `hole_north` and `hole_south` every other one."""
+def _hole(draft: Draft, rotor: Lamination, node: Node, key: str, k: int) -> Cut:
+    """Draws its magnets. Every pole has it, or with `hole_north` and `hole_south` every other one."""
     name, where, kind = f"rotor.{key}[{k}]", f"{rotor.where}.{key}[{k}]", str(node.get("__class__"))
     copies = _copies(node, "Zh", where)
     if kind == "HoleUD":
@@ -421,10 +436,9 @@ def _hole(draft: Draft, rotor: Lamination, node: Node, key: str, k: int) -> None
     magnets = [m for k, m in enumerate(hole.magnets) if present.get(f"magnet_{k}", present is not node)]
     turn = 2 * math.pi / copies if key == "hole_south" else 0.0
     around = copies if key == "hole" else max(copies // 2, 1)
-    pockets = unite([*hole.magnets, *hole.air])
-    draft.draw("pockets", f"{name}, {kind}", around, [rotate(loop, turn) for loop in pockets])
     draft.draw("magnets", f"{name}, {kind}", around, [rotate(loop, turn) for loop in magnets])
     _magnet_length(draft, _part(present, "magnet_0"), rotor, f"{name}.magnet_0")
+    return Cut(f"{name}, {kind}", around, tuple(rotate(loop, turn) for loop in (*hole.magnets, *hole.air)))
 
 
 def _surface_hole(node: Node, where: str) -> Hole:

@@ -174,6 +174,18 @@ def _double_cage(place: Place, d: Sizes) -> Slot:
     return Slot(half, float(s), 1)
 
 
+def _lsrpm(place: Place, d: Sizes) -> Slot:
+    """Open, between parallel teeth: a coil side along either tooth, with a rounded corner, behind a damper."""
+    low, s, r = d["W3"] / 2, place.way, place.way * d["R1"]
+    high = low + d["W1"]
+    x = (place.radius + s * d["H2"] - high * math.sin(place.half)) / math.cos(place.half)
+    z1 = math.sqrt(place.radius**2 - low**2) + 1j * low
+    corners = (z1, z1 + s * d["H3"], x - r + 1j * low, x + 1j * (low + d["R1"]), x + 1j * high)
+    a, b, c, e, f = (place.from_tooth(t) for t in corners)
+    centre = place.from_tooth(x - r + 1j * (low + d["R1"]))
+    return Slot([(a, 0.0), (b, 0.0), (c, arc(c, e, centre)), (e, 0.0), (f, 0.0)], 0.0, 1)
+
+
 def _pole(place: Place, d: Sizes, shoe: list[Point], z5: complex, rest: list[Point]) -> Slot:
     """Between two salient poles: coils on either side of each, beside its body."""
     wide = (d["W1"] - d["W2"]) / 2 - d["W3"]
@@ -221,6 +233,7 @@ CURVED: dict[str, Callable[[Place, Sizes], Slot]] = {
     "SlotDC": _double_cage,
     "SlotW60": _w60,
     "SlotW61": _w61,
+    "SlotWLSRPM": _lsrpm,
 }
 
 

@@ -90,6 +90,7 @@ MORE = {
     "SlotW25": {"H1": 0.002, "H2": 0.02, "W3": 0.007, "W4": 0.011},
     "SlotW30": {"H0": 0.001, "H1": 0.02, "R1": 0.001, "R2": 0.002, "W0": 0.003, "W3": 0.007},
     "SlotW28": {"H0": 0.001, "H3": 0.02, "R1": 0.002, "W0": 0.003, "W3": 0.007},
+    "SlotWLSRPM": {"H2": 0.02, "H3": 0.002, "R1": 0.001, "W1": 0.004, "W3": 0.007},
 }
 
 
@@ -124,6 +125,8 @@ def test_crowned_magnets_are_as_high_as_they_say(kind):
     assert 0.7 * 0.004 * 0.03 < area([loop]) < 0.004 * 0.032
 
 
+FOOT = 0.35 - math.asin(1 / 50)  # of a magnet whose sides are parallel: where they begin (rad)
+LSRPM = mm("H1=4 R1=1 R2=50 R3=45 W2=1", W1=0.35, W0=2 * (0.05 * math.sin(FOOT) - 0.001))
 U51 = "W0=20 W2=2 W3=12 W4=2 W5=10 W6=2 W7=8 H0=20 H1=2 H2=6"
 BURIED = {  # magnets, and the whole hole where it has a closed form
     "HoleM50": (mm("H0=20 H1=2 H2=2.5 H3=6 H4=0.8 W0=43.4 W1=3 W2=1 W3=10 W4=22"), 2 * 0.022 * 0.006, None),
@@ -137,6 +140,7 @@ BURIED = {  # magnets, and the whole hole where it has a closed form
     "HoleM61": (mm("W0=2 W1=8 W2=8 W3=10 H0=20 H1=4 H2=2"), 4 * 0.008 * 0.004, None),
     "HoleM62": (mm("H0=4 H1=2", W0=0.5, W0_is_rad=1.0), 0.25 * (0.078**2 - 0.074**2), None),
     "HoleM63": (mm("W0=20 H0=4 H1=2", top_flat=1.0), 0.004 * 0.02, None),
+    "HoleMLSRPM": (LSRPM, (LSRPM["W0"] + 0.002) * (0.075 - 0.05 * math.cos(FOOT)), None),
 }
 
 
@@ -178,6 +182,18 @@ def test_solids_of_round_slots_are_watertight(tmp_path):
     for check in check_cad(machine, 0.5):
         assert check.watertight, check.part
         assert check.solid_volume == pytest.approx(check.volume, rel=0.02)
+
+
+def test_ducts_may_be_drawn_across_a_hole(tmp_path):
+    """Line by line, at an angle of their own: with the hole they are one pocket, and what they share counts once."""
+    corners = [z * np.exp(-0.2j) for z in (0.022 - 0.002j, 0.026 - 0.002j, 0.026 + 0.002j, 0.022 + 0.002j)]
+    lines = [{"__class__": "Segment", "begin": str(a), "end": str(b)} for a, b in zip(corners, np.roll(corners, -1))]
+    duct = {"__class__": "HoleUD", "Zh": 4, "Alpha0": 0.2, "surf_list": [{"label": "HoleVoid", "line_list": lines}]}
+    draft = import_draft(saved(tmp_path, pyleecan(rotor__axial_vent=[duct])))
+    (pocket,) = draft.sections()["outlines"]["pockets"]
+    (loop,) = pocket["loops_mm"]
+    magnet, beyond = 20 * 3, 4 * 2.5  # mm2; the magnet begins at 24.5 mm
+    assert abs(loop_area([(*corner, 0.0) for corner in loop])) == pytest.approx(magnet + beyond, rel=1e-4)
 
 
 def test_a_wire_without_sizes_fills_its_slot_as_usual(tmp_path):
