@@ -387,11 +387,13 @@ def calibrated(
     Only the last needs a Jacobian of its own end; `rough`: nor does that, since another fit goes on from there.
     """
     fixed, theta = parameter_values(network, values), unknowns.coordinates(values)
+    renewed = robust_noise if robust else fit_noise
+    return _fit_in_rounds(network, tests, unknowns, theta, noise, renewed, fixed, rounds, rough, progress)
 
-    def left(parts: Sequence[Segment]) -> Noise:
-        return fit_noise(parts).robust(parts) if robust else fit_noise(parts)
 
-    return _fit_in_rounds(network, tests, unknowns, theta, noise, left, fixed, rounds, rough, progress)
+def robust_noise(parts: Sequence[Segment]) -> Noise:
+    """The noise of what is left, under which single readings that nothing explains pull no further than others."""
+    return fit_noise(parts).robust(parts)
 
 
 def _fit_in_rounds(
@@ -406,11 +408,17 @@ def _fit_in_rounds(
     rough: bool = False,
     progress: Progress = no_progress,
     keep: Keep = no_memory,
+    cache: CachedSegments | None = None,
 ) -> Fit:
     """A fit under a first noise, then `rounds` times under the one that `renewed` makes of what is left."""
     worth, draft = ROUGH if rounds else WORTH, rough or rounds > 0
     fit = minimise(
-        network, tests, unknowns, theta, noise, fixed, draft=draft, worth=worth, progress=progress, keep=keep
+        *(network, tests, unknowns, theta, noise, fixed),
+        cache=cache,
+        draft=draft,
+        worth=worth,
+        progress=progress,
+        keep=keep,
     )
     for i in range(rounds):
         draft = rough or i + 1 < rounds
@@ -453,6 +461,29 @@ def reading_fit(
     theta = unknowns.coordinates({**now, **left.values})
     whole = minimise(network, tests, unknowns, theta, fit_noise(left.parts), fixed, 0)
     return replace(whole, converged=fit.converged, gradient=fit.gradient)
+
+
+def refitted(
+    fit: Fit, tests: Sequence[Test], values: Mapping[str, float], effects: Collection[str] = ()
+) -> dict[str, float]:
+    """What `reading_fit` would find for readings that hardly differ, by the Jacobian of what it found."""
+    causes, machine, others = sorted_unknowns(fit.unknowns, effects)
+    now = {n: x for n, x in {**values, **fit.values}.items() if n not in others.names}
+
+    def cache(some: Unknowns) -> CachedSegments:
+        rows = [fit.unknowns.names.index(name) for name in some.names]
+        return CachedSegments([replace(s, J=s.J[:, rows]) for s in fit.parts])
+
+    def rough(some: Unknowns, noise: Noise, renewed: Callable[[Sequence[Segment]], Noise], rounds: int) -> Fit:
+        theta = some.coordinates(now)
+        return _fit_in_rounds(fit.network, tests, some, theta, noise, renewed, now, rounds, True, cache=cache(some))
+
+    if causes.names:
+        sizes = rough(fit.unknowns, fit.noise, robust_noise, ROBUST).values
+        now |= {name: sizes[name] for name in causes.names}
+    draft = rough(machine, FOLLOWED, FOLLOWED.robust, ROBUST)
+    now |= draft.values
+    return now | rough(others, fit_noise(draft.parts), fit_noise, 0).values
 
 
 def followed(fit: Fit, tests: Sequence[Test], values: Mapping[str, float], effects: Collection[str] = ()) -> Fit:

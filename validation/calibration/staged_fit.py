@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass, field
+from collections.abc import Callable, Collection, Sequence
+from dataclasses import dataclass, field, replace
 from fnmatch import fnmatchcase
 
 import numpy as np
@@ -14,8 +14,20 @@ from lumped.model.multipliers import parameter_values
 from lumped.model.network import Network, Parameter
 from measured.case import Case, Test
 from measured.sensors.operators import of_measurement, starts
-from validation.calibration.calibrate import Fit, Keep, Progress, minimise, no_memory, no_progress, reading_fit
-from validation.noise import FOLLOWED
+from validation.calibration.calibrate import (
+    CachedSegments,
+    Fit,
+    Keep,
+    Progress,
+    minimise,
+    no_memory,
+    no_progress,
+    reading_fit,
+    refitted,
+)
+from validation.comparison.linearisation import segments
+from validation.comparison.reading_correction import corrected_tests
+from validation.noise import FOLLOWED, fit_noise
 from validation.parameters.unknowns import Unknowns, measured, sorted_unknowns, working
 
 SAME = 0.5  # nats: two starts that end this close have found the same optimum
@@ -71,7 +83,11 @@ def belongs(name: str, pattern: str) -> bool:
 def staged_fit(
     case: Case, tests: Sequence[Test], start: Numbers, search: Search | None = None, progress: Progress = no_progress
 ) -> list[Fit]:
-    """The case's free parameters fitted to some tests, stage after stage; the fit of each."""
+    """The case's free parameters fitted to some tests, stage after stage; the fit of each.
+
+    Where there is a small network, it is fitted, to readings corrected at what it found last: residuals and Jacobian at
+    the end are the large one's.
+    """
     network, unknowns = working(case)
     search = search or Search()
     values, fits, effects = {**start, **search.begin}, [], {e.name for e in case.model.effects}
@@ -79,9 +95,39 @@ def staged_fit(
         names = {p.name for p in unknowns.parameters if p.name in stage.free or measured_in(p, stage.tests)}
         free = Unknowns(tuple(p for p in unknowns.parameters if p.name in names))
         best = best_start(network, stage.tests, free, values, search, progress) if search.starts > 1 else values
-        fits.append(reading_fit(network, stage.tests, free, best, effects, progress, search.keep))
-        values |= fits[-1].values
+        if case.small is case:
+            fit = reading_fit(network, stage.tests, free, best, effects, progress, search.keep)
+        else:
+            fit = multifidelity_fit(case, stage.tests, free, best, effects, progress, search.keep)
+        fits.append(fit)
+        values |= fit.values
     return fits
+
+
+def multifidelity_fit(
+    case: Case,
+    tests: Sequence[Test],
+    unknowns: Unknowns,
+    values: Numbers,
+    effects: Collection[str],
+    progress: Progress,
+    keep: Keep,
+) -> Fit:
+    """What `reading_fit` finds on the small network of a case, its readings corrected at the start and at the end.
+
+    Residuals and Jacobian are those of the large network there.
+    """
+    (network, _), (small, _) = working(case), working(case.small)
+    seen, now = replace(case, tests=tuple(tests)).small.tests, dict(values)
+    near = corrected_tests(network, tests, small, seen, now)
+    draft = reading_fit(small, near, unknowns, now, effects, progress, keep)
+    now |= draft.values
+    now |= refitted(draft, corrected_tests(network, tests, small, seen, now), now, effects)
+    fixed, theta = parameter_values(network, now), unknowns.coordinates(now)
+    parts = segments(network, tests, fixed, unknowns.parameters)
+    cache = CachedSegments(parts, nearby=False)
+    whole = minimise(network, tests, unknowns, theta, fit_noise(parts), fixed, 0, cache)
+    return replace(whole, converged=draft.converged, gradient=draft.gradient)
 
 
 def measured_in(p: Parameter, tests: Sequence[Test]) -> bool:

@@ -27,6 +27,7 @@ from validation.calibration.profile import profiles
 from validation.calibration.staged_fit import Search, belongs, merged, staged_fit
 from validation.comparison.compare import Comparison, errors, physical
 from validation.comparison.linearisation import segments
+from validation.comparison.reading_correction import corrected_tests
 from validation.effects import Effect, effect
 from validation.effects.during import During
 from validation.effects.input_terms import law_words
@@ -266,15 +267,17 @@ def _effect_checks(
     bare, values, predictions = _fit_before(case)
     present = [e.name for e in case.model.effects]
     lone = lone_tests(bare, present)
-    parts = [
-        replace(f, predicted=tuple(_trusted(t, faults) for t in f.predicted))
-        for f in folds(tests, telling, middle, lone)
-    ]
+
+    def predicted(of: Fit, model: Model, values: Mapping[str, float], effects: Sequence[str]) -> list[FoldPrediction]:
+        draft, seen = _corrected(of, tests, model, case, values)
+        parts = folds(seen, telling, middle, lone)
+        trusted = [replace(f, predicted=tuple(_trusted(t, faults) for t in f.predicted)) for f in parts]
+        return [fold_prediction(draft, fold, values, effects) for fold in trusted]
+
     if (at := (middle, *telling, *(e.name for e in faults))) not in predictions:
-        predictions[at] = [fold_prediction(bare, fold, values, present) for fold in parts]
+        predictions[at] = predicted(bare, case.model, values, present)
     alike = replace(fit, noise=bare.noise)  # else the shapes that two residuals were given outweigh what they predict
-    added = parameter_values(fit.network, new.values)
-    after = [fold_prediction(alike, fold, added, (*present, *names)) for fold in parts]
+    after = predicted(alike, new, parameter_values(fit.network, new.values), (*present, *names))
     # A sensor that always reads wrong makes what it read likelier by itself: what was left out has to fall as well.
     same = 1.0 if not aside and all(effect(name).fault for name in names) else SAME
     checks = prediction_checks(predictions[at], after, telling, tuple(lone), aside, same)
@@ -341,8 +344,10 @@ def _fit_checks(case: Case, fit: Fit, new: Model, changes: Sequence[Change]) -> 
     fitted = [t for t in case.usable if t.name in {s.test for s in fit.parts}]
     values, square, seconds = parameter_values(fit.network, new.values), np.zeros(2), 0.0
     effects = [e.name for e in case.model.effects if e.name in fit.unknowns.names]
-    blind = [(f, fold_prediction(fit, f, values, effects)) for f in folds(fitted, (), lone=lone_tests(fit, effects))]
-    for fold, now in blind:
+    lone = lone_tests(fit, effects)
+    draft, seen = _corrected(fit, fitted, new, case, values)
+    blind = [fold_prediction(draft, fold, values, effects) for fold in folds(seen, (), lone=lone)]
+    for fold, now in zip(folds(fitted, (), lone=lone), blind, strict=True):
         if not previous & {t.name for t in fold.predicted}:
             was, _, span = squares(segments(standing(case), fold.predicted, case.model.values), fold)
             square += np.array([was, now.square_K2s])
@@ -360,7 +365,7 @@ def _fit_checks(case: Case, fit: Fit, new: Model, changes: Sequence[Change]) -> 
         Check(kind, bool(b <= max(GETS_WORSE * a, sigma)), float(b), float(a), f"{which[kind]}: {fall(a, b)}")
         for kind, (a, b) in pairs.items()
     ]
-    sums = {which["left out"]: [(now.square_K2s, now.no_change_K2s, now.seconds) for _, now in blind]}
+    sums = {which["left out"]: [(now.square_K2s, now.no_change_K2s, now.seconds) for now in blind]}
     sums |= {which[kind]: [_as_read(replace(case, model=new), some)] for kind, some in groups.items()}
     return (*checks, _no_change(sums, sigma))
 
@@ -396,8 +401,27 @@ def _values(model: Model, fits: Sequence[Fit]) -> dict[str, float]:
 
 
 def _sure(fit: Fit, tests: Sequence[Test], model: Model, case: Case, steps_like: ModelError | None = None) -> Fit:
-    """A stage's fit with the model error in its covariance."""
-    return with_model_error(fit, *_conditions(fit, tests, model), case.doubt, steps_like=steps_like)
+    """A stage's fit with the model error in its covariance, as the small network has it where there is one."""
+    some, values = _conditions(fit, tests, model)
+    draft, seen = _small(fit, some, model, case)
+    return replace(with_model_error(draft, seen, values, case.doubt, steps_like=steps_like), network=fit.network)
+
+
+def _small(fit: Fit, tests: Sequence[Test], model: Model, case: Case) -> tuple[Fit, Sequence[Test]]:
+    """A fit on the small network, and the tests as that looks at them; both as they are where there is none."""
+    training = replace(case.training(), model=model)
+    small = training.small
+    if small is training:
+        return fit, tests
+    return replace(fit, network=working(small)[0]), replace(training, tests=tuple(tests)).small.tests
+
+
+def _corrected(
+    fit: Fit, tests: Sequence[Test], model: Model, case: Case, values: Mapping[str, float]
+) -> tuple[Fit, Sequence[Test]]:
+    """The same, readings corrected at some values: what was left out is predicted from there."""
+    draft, seen = _small(fit, tests, model, case)
+    return draft, corrected_tests(fit.network, tests, draft.network, seen, values) if draft is not fit else tests
 
 
 def _profiled(

@@ -11,13 +11,15 @@ from playground import Truth, network, wind
 from lumped.condensation.error_budget import ErrorBudget, PlaceError
 from lumped.transfer.laws import Fixed
 from measured.case import LowFidelity
-from validation import diagnose
+from validation import add, diagnose
+from validation.calibration.calibrate import WORTH
 from validation.comparison.linearisation import segments
+from validation.comparison.reading_correction import corrected
 from validation.diagnosis import infer
 from validation.effects import extended
 from validation.inference.evidence import with_members
 from validation.inference.hypotheses import Weighed
-from validation.inference.low_fidelity import corrected, fidelity_error, low_fidelity_case
+from validation.inference.low_fidelity import fidelity_error, low_fidelity_case
 from validation.parameters.unknowns import working
 
 pytestmark = pytest.mark.heavy
@@ -67,6 +69,20 @@ def test_a_hidden_effect_is_named_as_by_the_large_network():
     assert small.candidates[0].value == pytest.approx(large.candidates[0].value, rel=0.1)
     assert small.candidates[0].ci95[0] < WIND * 1.2
     assert small.candidates[0].ci95[1] > WIND / 1.2
+
+
+def test_an_effect_is_added_with_the_size_and_error_of_the_large_network():
+    """Fits run on the small network, 15 % off; what they end with is the large one's."""
+    large, small = (add(one, "convection@flange.right") for one in (replace(case(), low=None), case()))
+    assert small.accepted
+    assert large.accepted
+    own, other = (next(p for p in step.parameters if p.name == "convection@flange.right") for step in (small, large))
+    sd = (other.ci95[1] - other.ci95[0]) / (2 * 1.96)
+    assert own.value == pytest.approx(other.value, abs=np.sqrt(2 * WORTH) * sd)  # where a fit has no more to gain
+    for own, other in zip(small.tests, large.tests, strict=True):
+        assert own.after == pytest.approx(other.after, abs=0.03), own.name
+    own, other = (next(c.value for c in step.checks if c.check == "no change") for step in (small, large))
+    assert own == pytest.approx(other, rel=0.1)
 
 
 def test_its_error_is_in_the_budget_that_is_printed():
