@@ -216,7 +216,7 @@ def _lsrpm(place: Place, d: Sizes) -> Hole:
     lower: list[Point | complex] = [(z1, arc(z1, z2, c1)), z2, z3]
     upper: list[Point | complex] = [z3.conjugate(), (z2.conjugate(), arc(z1, z2, c1))]
     low = loop_through([*lower, *upper, (z1.conjugate(), arc(z1.conjugate(), z1))])
-    tip = [(z4, arc(z4, z5, z5 - r)), z5, (z5.conjugate(), arc(z4, z5, z5 - r)), z4.conjugate()]
+    tip: list[Point | complex] = [(z4, arc(z4, z5, z5 - r)), z5, (z5.conjugate(), arc(z4, z5, z5 - r)), z4.conjugate()]
     return Hole((loop_through([z3, z4, z4.conjugate(), z3.conjugate()]),), (low, loop_through(tip)))
 
 
