@@ -19,6 +19,7 @@ from geom.meshing.triangulate import Triangulation
 
 FaceName = Callable[[str, str], str]
 THINNER = 0.25  # a layer over the next one inwards: what an end disturbs dies away within a few layers
+ASIDE = 2e-6  # m; so far beyond a border is its other side: border points are moved by a micrometre of a metre
 Walls = list[tuple[Ints, Ints]]  # triangles (n, 3) and the labels (n, 2) on their two sides
 
 
@@ -116,14 +117,17 @@ def _sides(
 
 
 def _labels_beside(cut: Partition, tree: shapely.STRtree, slab: int, ends: Array, inside: Array) -> Ints:
-    """Labels just across each segment (n, 2, 2) from the points inside (n, 2)."""
+    """Labels of fluids just across each segment (n, 2, 2) from the points inside (n, 2)."""
     along = ends[:, 1] - ends[:, 0]
     normal = np.column_stack([-along[:, 1], along[:, 0]]) / np.linalg.norm(along, axis=1)[:, None]
     towards = np.einsum("ij,ij->i", normal, inside - ends[:, 0]) > 0
     normal[towards] *= -1
     labels = np.full(len(ends), AMBIENT)
-    index, face = tree.query(shapely.points(ends.mean(axis=1) + 2e-6 * normal), predicate="intersects")
-    labels[index] = cut.labels[face, slab]
+    beyond = shapely.points(ends.mean(axis=1) + ASIDE * normal)
+    # Where a crevice ends in a tip the point lies past it, in a solid: then what touches the segment counts.
+    for pairs in (tree.query(beyond, predicate="dwithin", distance=ASIDE), tree.query(beyond, predicate="intersects")):
+        index, face = pairs[:, ~cut.solid[pairs[1], slab]]
+        labels[index] = cut.labels[face, slab]
     return labels
 
 

@@ -85,20 +85,21 @@ def staged_fit(
 ) -> list[Fit]:
     """The case's free parameters fitted to some tests, stage after stage; the fit of each.
 
-    Where there is a small network, it is fitted, to readings corrected at what it found last: residuals and Jacobian at
-    the end are the large one's.
+    A model that stands is not far from its next fit, so that where there is a small network, that one is fitted. The
+    first calibration goes too far for a correction at its start.
     """
     network, unknowns = working(case)
+    corrected = case.small is not case and bool(case.model.values)
     search = search or Search()
     values, fits, effects = {**start, **search.begin}, [], {e.name for e in case.model.effects}
     for stage in fit_stages(case, tests, unknowns):
         names = {p.name for p in unknowns.parameters if p.name in stage.free or measured_in(p, stage.tests)}
         free = Unknowns(tuple(p for p in unknowns.parameters if p.name in names))
         best = best_start(network, stage.tests, free, values, search, progress) if search.starts > 1 else values
-        if case.small is case:
-            fit = reading_fit(network, stage.tests, free, best, effects, progress, search.keep)
-        else:
+        if corrected:
             fit = multifidelity_fit(case, stage.tests, free, best, effects, progress, search.keep)
+        else:
+            fit = reading_fit(network, stage.tests, free, best, effects, progress, search.keep)
         fits.append(fit)
         values |= fit.values
     return fits

@@ -184,16 +184,29 @@ def test_solids_of_round_slots_are_watertight(tmp_path):
         assert check.solid_volume == pytest.approx(check.volume, rel=0.02)
 
 
-def test_ducts_may_be_drawn_across_a_hole(tmp_path):
-    """Line by line, at an angle of their own: with the hole they are one pocket, and what they share counts once."""
-    corners = [z * np.exp(-0.2j) for z in (0.022 - 0.002j, 0.026 - 0.002j, 0.026 + 0.002j, 0.022 + 0.002j)]
+def duct(corners, turn=0.0):
+    """A duct of every pole, line by line (m), at an angle (rad) of its own."""
     lines = [{"__class__": "Segment", "begin": str(a), "end": str(b)} for a, b in zip(corners, np.roll(corners, -1))]
-    duct = {"__class__": "HoleUD", "Zh": 4, "Alpha0": 0.2, "surf_list": [{"label": "HoleVoid", "line_list": lines}]}
-    draft = import_draft(saved(tmp_path, pyleecan(rotor__axial_vent=[duct])))
+    return {"__class__": "HoleUD", "Zh": 4, "Alpha0": turn, "surf_list": [{"label": "HoleVoid", "line_list": lines}]}
+
+
+def test_ducts_may_be_drawn_across_a_hole(tmp_path):
+    """With the hole they are one pocket, and what they share counts once."""
+    corners = np.exp(-0.2j) * np.array([0.022 - 0.002j, 0.026 - 0.002j, 0.026 + 0.002j, 0.022 + 0.002j])
+    draft = import_draft(saved(tmp_path, pyleecan(rotor__axial_vent=[duct(corners, 0.2)])))
     (pocket,) = draft.sections()["outlines"]["pockets"]
     (loop,) = pocket["loops_mm"]
     magnet, beyond = 20 * 3, 4 * 2.5  # mm2; the magnet begins at 24.5 mm
     assert abs(loop_area([(*corner, 0.0) for corner in loop])) == pytest.approx(magnet + beyond, rel=1e-4)
+
+
+def test_a_crevice_beside_a_magnet_ends_in_a_tip(tmp_path):
+    """Narrower there than what a mesh can tell: its walls belong to the air, and contacts to what touches."""
+    crevice = duct(np.array([24.5, 24.5 + 8j, 24.44 + 8j, 24.497 + 0.2j]) / 1000)
+    mesh = build_mesh(load_machine(saved(tmp_path, pyleecan(rotor__axial_vent=[crevice]))), **COARSE)
+    for contact in mesh.contacts.values():
+        for name in (contact.a, contact.b):
+            assert np.isin(contact.facets, mesh.tets[mesh.region == mesh.parts.index(name)]).all(), name
 
 
 def test_a_wire_without_sizes_fills_its_slot_as_usual(tmp_path):
