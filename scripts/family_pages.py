@@ -35,6 +35,35 @@ _MEASURED = (
     "",
 )
 
+EVERY = "volumes, masses and areas of the parts, from their profiles; the heat balance of a solution on the mesh"
+FILMS = "[its films at 200 operating points each](../benchmarks.md#random-operating-points)"
+TRUST = {  # family -> what is exact, what is assumed, what it was held against
+    "series-dc": (
+        EVERY,
+        "windings as mixtures of copper and resin; brushes take half of what slides; each space of air has one "
+        "temperature",
+        "[ratings and curves of a published 100 kW motor](../papers/series-dc-cooling.md), whose measured temperatures "
+        f"are not published; {FILMS}; [a road test](../data-road-test.md) that another model simulates",
+    ),
+    "pmsm": (
+        EVERY,
+        "windings as mixtures of copper and resin, or layers of bars; end turns as a ring or arches; each space of air "
+        "has one temperature",
+        "[a published procedure of three machines](../papers/thermal-test-procedure.md); exact cells of wires; "
+        f"Dowell's closed form for the loss of [bars](../how-to/hairpin.md); {FILMS}",
+    ),
+    "tefc": (
+        EVERY,
+        "bars and rings of the cage as one body; all dimensions, as no measured machine of this kind is in the library",
+        f"Mellor's closed form of a machine's cylinders (1991); {FILMS}",
+    ),
+    "cross-section": (
+        f"{EVERY}; arcs as they are drawn, in the mesh as chords",
+        "frame, end turns, contacts and losses where a drawing or another program's file has none",
+        "closed forms of slots, magnets and holes; [machines that come with pyleecan](../how-to/import.md#pyleecan)",
+    ),
+}
+
 
 def family_page(family: Family, picture: str) -> str:
     """Markdown; `picture` is the path of the drawing as seen from the page."""
@@ -57,9 +86,16 @@ def family_page(family: Family, picture: str) -> str:
             *_MEASURED,
             table(["ratio", "default", "allowed", "or", "default", "allowed", "meaning"], measured),
             *_outlines(family),
+            *_trust(family),
             "",
         ]
     )
+
+
+def _trust(family: Family) -> list[str]:
+    """How far to trust a machine of this kind."""
+    rows = zip(("exact", "assumed", "held against"), TRUST[family.name], strict=True)
+    return ["", "## How far to trust it", "", table(["", "what"], rows)]
 
 
 def _outlines(family: Family) -> list[str]:

@@ -91,8 +91,8 @@ def candidates(diagnosis: Mapping[str, Any], effects: Collection[str]) -> list[R
 
 
 def conclusion(diagnosis: Mapping[str, Any]) -> Row:
-    """The verdict in a sentence, and what the tests cannot see."""
-    tone, sentence = th.verdict(diagnosis, None)
+    """What is missing, as the command says it, and what the tests cannot see."""
+    tone, _ = th.verdict(diagnosis, None)
     hidden = [h["words"] for h in diagnosis["cannot_see"]]
     further_tests = [
         f"{o['kind']} {o['what']}" + (f" ({o['how']})" if o["how"] else "") + f": separates {', '.join(o['separates'])}"
@@ -101,7 +101,6 @@ def conclusion(diagnosis: Mapping[str, Any]) -> Row:
     hidden_words = f"{th.counted(len(hidden), 'effect')} could be there unseen, e.g. {', '.join(hidden[:4])}."
     return {
         "tone": tone,
-        "sentence": sentence,
         "words": diagnosis["words"],
         "unseen": hidden_words * bool(hidden),
         "ahead": further_tests,
