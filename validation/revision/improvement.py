@@ -144,7 +144,7 @@ def singletons(diagnosis: Diagnosis, choice: Sequence[Candidate]) -> str | None:
     Halves of the instants may say that more is missing beside it: that is no doubt of what is sure.
     """
     first = effect(choice[0].effect)
-    odds = sum(c.probability for c in diagnosis.candidates if is_same_event(effect(c.effect), first))
+    odds = sum(o.probability for o in diagnosis.odds if any(is_same_event(effect(e), first) for e in o.effects))
     alone = len(choice) == 1 and diagnosis.verdict in ("named", "several") and odds > 0.5  # beside unknown heat, too
     return first.name if (odds >= SURE or alone) and _unasked(first.name) else None
 

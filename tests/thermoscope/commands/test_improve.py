@@ -10,7 +10,7 @@ from small_case import small_case
 from thermoscope.case_folder.history import load_history
 from thermoscope.cli import whole_app
 from thermoscope.commands.explain import improve as command
-from validation.inference.result import Candidate, Diagnosis
+from validation.inference.result import Candidate, Diagnosis, Odds
 from validation.revision.improvement import offered, singletons
 from viz.pages.words import ending
 
@@ -75,7 +75,8 @@ def row(name, decision):
 
 def answer(verdict, *rows):
     groups = (tuple(r.effect for r in rows),) if rows else ()
-    return Diagnosis(verdict, "words", tuple(g[0] for g in groups), groups, rows, (), (), (), 1.0, 0.5, 3.0)
+    found = Diagnosis(verdict, "words", tuple(g[0] for g in groups), groups, rows, (), (), (), 1.0, 0.5, 3.0)
+    return replace(found, odds=tuple(Odds(r.effect, (r.effect,), r.probability) for r in rows))
 
 
 @pytest.mark.parametrize(
@@ -117,9 +118,12 @@ def test_one_event_with_ends_a_little_apart_is_as_sure_as_both_together():
         replace(row(f"convection.constant@yoke in b:{span}s", "named"), probability=0.4)
         for span in ("100-300", "120-300")
     )
-    found = replace(answer("named", lid), candidates=(lid, late))
+    each = answer("named", lid, late).odds
+    found = replace(answer("named", lid), candidates=(lid, late), odds=each)
     assert singletons(found, offered(found)) == lid.effect
     assert singletons(answer("named", lid), (lid,)) is None
+    both = replace(found, odds=(Odds("both", (lid.effect, late.effect), 0.4),))  # a set with both counts once
+    assert singletons(both, (lid,)) is None
 
 
 @pytest.mark.parametrize(("word", "name"), [("2\n", "iron@yoke"), ("\n", None), ("", None), ("3\n", None)])
