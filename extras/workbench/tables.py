@@ -99,12 +99,7 @@ def conclusion(diagnosis: Mapping[str, Any]) -> Row:
         for o in th.offers(diagnosis)[:3]
     ]
     hidden_words = f"{th.counted(len(hidden), 'effect')} could be there unseen, e.g. {', '.join(hidden[:4])}."
-    return {
-        "tone": tone,
-        "words": diagnosis["words"],
-        "unseen": hidden_words * bool(hidden),
-        "ahead": further_tests,
-    }
+    return {"tone": tone, "words": diagnosis["words"], "unseen": hidden_words * bool(hidden), "ahead": further_tests}
 
 
 def percent(value: float, whole: float) -> float:
