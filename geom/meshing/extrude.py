@@ -123,9 +123,9 @@ def _labels_beside(cut: Partition, tree: shapely.STRtree, slab: int, ends: Array
     towards = np.einsum("ij,ij->i", normal, inside - ends[:, 0]) > 0
     normal[towards] *= -1
     labels = np.full(len(ends), AMBIENT)
-    beyond = shapely.points(ends.mean(axis=1) + ASIDE * normal)
+    points = shapely.points(ends.mean(axis=1) + ASIDE * normal)
     # Where a crevice ends in a tip the point lies past it, in a solid: then what touches the segment counts.
-    for pairs in (tree.query(beyond, predicate="dwithin", distance=ASIDE), tree.query(beyond, predicate="intersects")):
+    for pairs in (tree.query(points, predicate="dwithin", distance=ASIDE), tree.query(points, predicate="intersects")):
         index, face = pairs[:, ~cut.solid[pairs[1], slab]]
         labels[index] = cut.labels[face, slab]
     return labels

@@ -119,11 +119,11 @@ def multifidelity_fit(
     Residuals and Jacobian are those of the large network there.
     """
     (network, _), (small, _) = working(case), working(case.small)
-    seen, now = replace(case, tests=tuple(tests)).small.tests, dict(values)
-    near = corrected_tests(network, tests, small, seen, now)
+    small_tests, now = replace(case, tests=tuple(tests)).small.tests, dict(values)
+    near = corrected_tests(network, tests, small, small_tests, now)
     draft = reading_fit(small, near, unknowns, now, effects, progress, keep)
     now |= draft.values
-    now |= refitted(draft, corrected_tests(network, tests, small, seen, now), now, effects)
+    now |= refitted(draft, corrected_tests(network, tests, small, small_tests, now), now, effects)
     fixed, theta = parameter_values(network, now), unknowns.coordinates(now)
     parts = segments(network, tests, fixed, unknowns.parameters)
     cache = CachedSegments(parts, nearby=False)

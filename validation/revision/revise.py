@@ -269,8 +269,8 @@ def _effect_checks(
     lone = lone_tests(bare, present)
 
     def predicted(of: Fit, model: Model, values: Mapping[str, float], effects: Sequence[str]) -> list[FoldPrediction]:
-        draft, seen = _corrected(of, tests, model, case, values)
-        parts = folds(seen, telling, middle, lone)
+        draft, small_tests = _corrected(of, tests, model, case, values)
+        parts = folds(small_tests, telling, middle, lone)
         trusted = [replace(f, predicted=tuple(_trusted(t, faults) for t in f.predicted)) for f in parts]
         return [fold_prediction(draft, fold, values, effects) for fold in trusted]
 
@@ -345,8 +345,8 @@ def _fit_checks(case: Case, fit: Fit, new: Model, changes: Sequence[Change]) -> 
     values, square, seconds = parameter_values(fit.network, new.values), np.zeros(2), 0.0
     effects = [e.name for e in case.model.effects if e.name in fit.unknowns.names]
     lone = lone_tests(fit, effects)
-    draft, seen = _corrected(fit, fitted, new, case, values)
-    blind = [fold_prediction(draft, fold, values, effects) for fold in folds(seen, (), lone=lone)]
+    draft, small_tests = _corrected(fit, fitted, new, case, values)
+    blind = [fold_prediction(draft, fold, values, effects) for fold in folds(small_tests, (), lone=lone)]
     for fold, now in zip(folds(fitted, (), lone=lone), blind, strict=True):
         if not previous & {t.name for t in fold.predicted}:
             was, _, span = squares(segments(standing(case), fold.predicted, case.model.values), fold)
@@ -403,8 +403,8 @@ def _values(model: Model, fits: Sequence[Fit]) -> dict[str, float]:
 def _sure(fit: Fit, tests: Sequence[Test], model: Model, case: Case, steps_like: ModelError | None = None) -> Fit:
     """A stage's fit with the model error in its covariance, as the small network has it where there is one."""
     some, values = _conditions(fit, tests, model)
-    draft, seen = _small(fit, some, model, case)
-    return replace(with_model_error(draft, seen, values, case.doubt, steps_like=steps_like), network=fit.network)
+    draft, small_tests = _small(fit, some, model, case)
+    return replace(with_model_error(draft, small_tests, values, case.doubt, steps_like=steps_like), network=fit.network)
 
 
 def _small(fit: Fit, tests: Sequence[Test], model: Model, case: Case) -> tuple[Fit, Sequence[Test]]:
@@ -420,8 +420,8 @@ def _corrected(
     fit: Fit, tests: Sequence[Test], model: Model, case: Case, values: Mapping[str, float]
 ) -> tuple[Fit, Sequence[Test]]:
     """The same, readings corrected at some values: what was left out is predicted from there."""
-    draft, seen = _small(fit, tests, model, case)
-    return draft, corrected_tests(fit.network, tests, draft.network, seen, values) if draft is not fit else tests
+    draft, small_tests = _small(fit, tests, model, case)
+    return draft, corrected_tests(fit.network, tests, draft.network, small_tests, values) if draft is not fit else tests
 
 
 def _profiled(

@@ -1,6 +1,6 @@
 """Temperatures that a Motor-CAD file stores, against the network of the machine imported from it.
 
-    python benchmarks/stored_temperatures.py FILE.mot [--json FILE] [--page]
+    python benchmarks/peers/stored_temperatures.py FILE.mot [--json FILE] [--page]
 
 The file stores a steady state and not the losses that made it. Losses in windings, stator, rotor, magnets and bearings,
 none below zero, are sought that come nearest to the stored rises over the coolant's inlet, each by its logarithm. Then
