@@ -198,7 +198,7 @@ def _without_extremes(source: Source, every: list[Guess]) -> list[Guess]:
     words = {g.column: {*tokens(source.labels[g.column])} for g in every if g.used}
     means = [words[c] - MEAN for c in words if not words[c] & EXTREME]
     parts = [words[g.column] for g in every if g.place and not of_edge(roles_of(source.labels[g.column]))]
-    bases = [other for other in parts if any(len(word) > 1 for word in other - QUANTITY["temperature"])]
+    bases = [other - READ for other in parts if any(len(w) > 1 for w in other - READ - QUANTITY["temperature"])]
     for i, g in enumerate(every):
         mine = words.get(g.column, set())
         if mine & EXTREME and mine - EXTREME in means:
@@ -436,6 +436,8 @@ def _left_out(source: Source, column: str) -> str:
     if unit_text and not unit:
         of_nothing = is_unit(unit_text) or not quantities
         return f"its unit '{unit_text}' is {'of nothing a model reads' if of_nothing else UNKNOWN}"
+    if unit == "%" and quantities == ["temperature"]:
+        return "a temperature in percent: of what?"
     words = set(tokens(label)) | set(re.findall(r"[a-z]+", label.lower()))
     if is_rise(label) and not words & QUANTITY["power"]:
         return "a difference of temperatures, not a temperature"

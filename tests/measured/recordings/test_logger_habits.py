@@ -106,6 +106,25 @@ def test_what_is_made_of_a_reading_and_a_current_before_the_inverter_give_way(tm
     assert "I_rms_rms" in goes(found)
 
 
+def test_what_was_not_measured_where_something_else_was(tmp_path):
+    """A model beside the readings, by its name or by theirs; an odometer, and a temperature in percent, are neither."""
+    header = "t [s],winding measured [°C],winding LPTN [°C],frame meas [°C],frame XQZ [°C],odometer_km,Temp INV [%]"
+    model = [WARM[c] + 3 * np.sin(T) for c in "WH"]
+    found, _ = read(file(tmp_path, header, "t", "W", model[0], "H", model[1], 1e4 + T, 20 + 0.3 * HEAT))
+    assert goes(found).keys() == {"winding measured [°C]", "frame meas [°C]", "frame XQZ [°C]"}
+    assert found["winding LPTN [°C]"][0].doubt == "modelled, not read"
+    assert found["frame XQZ [°C]"][0].doubt == VARIANT
+
+
+def test_names_that_two_words_were_joined_to(tmp_path):
+    header = "t [s],motortemp,settemp,cputemp,vehicle_speed,wind speed,room [°C],I [A]"
+    found, _ = read(file(tmp_path, header, "t", "W", "H", WARM["W"] + 1.0, "n", "I", "A", "I"))
+    assert goes(found)["motortemp"] == "motor"
+    assert not {"settemp", "cputemp"} & goes(found).keys()
+    assert {found[c][0].quantity for c in ("vehicle_speed", "wind speed")} == {"vehicle_speed"}
+    assert {found[c][0].quantity for c in ("motortemp", "settemp")} == {"temperature"}
+
+
 def test_other_devices_are_no_parts_and_the_motor_is_its_winding(tmp_path):
     header = "t [s],Temp_Motor [°C],Temp_ESC [°C],Schaltschrank [°C],Gehäuse [°C],Halle [°C],I [A]"
     one = file(tmp_path, header, "t", "W", "H", "A", "H", "A", "I")
@@ -456,6 +475,12 @@ def test_a_labview_file_has_its_units_in_its_second_head_and_no_groups(tmp_path)
         ("Korpus", Role.HOUSING),
         ("코일 온도", Role.WINDING),
         ("실내 온도", Role.AMBIENT),
+        ("T_Ruecklauf", Role.COOLANT),
+        ("T_lozysko", Role.BEARING),
+        ("kolnierz", Role.END_SHIELD),
+        ("EmTRtr_T", Role.ROTOR),
+        ("airtemp", Role.AMBIENT),
+        ("template", Role.TEST_BED),  # a plate, and no temperature
     ],
 )
 def test_names_of_parts_in_the_words_of_other_shops(name, role):
