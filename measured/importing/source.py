@@ -33,7 +33,7 @@ TEXT = 0.2  # share of cells that are words from which a column holds no reading
 BINARY = (".tdms", ".mf4", ".parquet", ".mat", *(f".{name}" for name in READERS))
 MODELS = (".toml", ".step", ".stp", ".mot", ".dxf")
 UNNAMED = re.compile(r"column \d+")
-ONE_OF = re.compile(r"(?i)(?:phase|ph|coil|spule|sensor|channel|ch|kanal|strang)$")  # and a letter after it
+ONE_OF = re.compile(r"(?i)(?:phase|coil|spule|sensor|channel|kanal|strang|(?<![^\W\d_])[pc]h)$")  # before a letter
 BRACKETED = re.compile(r"(.*?)\s*[\[(]([^\[\]()]*)[\])]")
 SCALED = re.compile(
     r"(?:[x×*]\s*(?=0|1/|1e))?(1/(?=1))?(0[.,]0*1|1[eE]-\d|10+)\s*([^\d\s.,].*)"

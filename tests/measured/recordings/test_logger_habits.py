@@ -116,6 +116,49 @@ def test_what_was_not_measured_where_something_else_was(tmp_path):
     assert found["frame XQZ [°C]"][0].doubt == VARIANT
 
 
+@pytest.mark.parametrize("heads", [("", ""), ("Test 1: rated ", "Test 2: steps ")])
+def test_tests_side_by_side_in_one_table(tmp_path, heads):
+    """The second is shorter; two loggers that ran at one time are no two tests."""
+    header = ",".join(
+        f"{head}{name}" for head in heads for name in ("t (min)", "T_winding (°C)", "T_room (°C)", "I (A)")
+    )
+    short = {c: [f"{x:.1f}" for x in WARM[c][:200]] + [""] * (N - 200) for c in "tWAI"}
+    _, runs = read(file(tmp_path, header, *"tWAI", *(short[c] for c in "tWAI")))
+    assert [source.rows for source, _ in runs] == [N, 200]
+    assert [clock.end_s for _, clock in runs] == [60 * T[-1], 60 * T[199]]
+    assert [source.labels["T_winding"] for source, _ in runs] == ["T_winding"] * 2
+    stamps = [f"2026-03-01 {8 + k // 3600:02d}:{k // 60 % 60:02d}:{k % 60:02d}" for k in T.tolist()]
+    _, runs = read(file(tmp_path, "Time,T1 (°C),T2 (°C),Time,T1 (°C),T2 (°C)", stamps, *"WH", stamps, *"HA"))
+    assert len(runs) == 1
+
+
+def test_rows_of_several_machines(tmp_path):
+    """One after the other at every time: a test of each; rows that a state parts are of one."""
+    both = {c: np.repeat(WARM[c], 2) for c in "tWAI"}
+    header = "t [s],Turbine,T_winding [°C],T_room [°C],I [A]"
+    _, runs = read(file(tmp_path, header, both["t"], ["T01", "T06"] * N, *(both[c] for c in "WAI")))
+    assert [(source.rows, clock.end_s, clock.doubt) for source, clock in runs] == [(N, T[-1], "")] * 2
+    assert runs[0][0].numbers("T_winding [°C]") == pytest.approx(WARM["W"], abs=0.006)
+    _, runs = read(file(tmp_path, header, "t", ["on", "off"] * (N // 2), *"WAI"))
+    assert len(runs) == 1
+
+
+def test_a_clock_without_a_unit_in_a_log_of_a_signal_a_row(tmp_path):
+    """Rows 90 apart that read each signal every 1000: those are milliseconds."""
+    rows = [(1000 * k + 90 * j, j) for k in range(N) for j in range(3)]
+    cells = [[f"{WARM[c][k // 3]:.2f}" if j == i else "" for k, (_, j) in enumerate(rows)] for i, c in enumerate("WAI")]
+    _, runs = read(file(tmp_path, "Time,T_winding [°C],T_room [°C],I [A]", [t for t, _ in rows], *cells))
+    ((_, clock),) = runs
+    assert clock.doubt == "no unit of 'Time': ms are assumed"
+
+
+def test_brackets_of_a_chinese_sheet_and_the_letters_of_a_channel_in_a_word(tmp_path):
+    header = "t [s],绕组（℃）,环境（℃）,电流（A）,转速（rpm）,Pmech/W"
+    found, _ = read(file(tmp_path, header, *"tWAIn", 100 + 3 * HEAT))
+    assert {g.doubt for g, _ in found.values()} == {""}
+    assert found["Pmech/W"][0].unit == "W"
+
+
 def test_names_that_two_words_were_joined_to(tmp_path):
     header = "t [s],motortemp,settemp,cputemp,vehicle_speed,wind speed,room [°C],I [A]"
     found, _ = read(file(tmp_path, header, "t", "W", "H", WARM["W"] + 1.0, "n", "I", "A", "I"))
