@@ -204,8 +204,9 @@ def runs_of(source: Source, period_s: float | None = None) -> list[Source]:
     anew = np.isfinite(number).all() and np.unique(number).size == at.size + 1
     steps = np.diff(clock.seconds) if clock else np.empty(0)
     if clock is not None and not (anew and at.size and bool((steps[at - 1] > 2 * np.nanmedian(steps)).all())):
-        t = clock.seconds
-        at = np.flatnonzero(np.diff(t) < 0) + 1
+        rows = np.flatnonzero(np.isfinite(clock.seconds))  # not a header that comes again
+        t = np.interp(np.arange(source.rows), rows, clock.seconds[rows]) if rows.size else clock.seconds
+        at = rows[1:][np.diff(clock.seconds[rows]) < 0]
         usual = float(np.nanmedian(np.abs(np.diff(t)))) if t.size > 1 else 0.0
         anew = clock.start is None and bool((np.abs(t[at] - t[:1]) <= usual).all())
         anew &= not any(abs(t[k - 1] + usual - turn) <= usual for k in at[:1] for turn in (60.0, HOUR_S, DAY_S))

@@ -639,7 +639,9 @@ def single(guesses: list[Guess], target: Target, labels: Mapping[str, str]) -> l
             continue
         of_part = g.quantity == "power" and (roles_of(g.column) or LOSS & {*tokens(labels[owner[key]])})
         if g.feeds and (g.feeds not in target.inputs or of_part) and not is_setpoint(g.column):  # of copper or iron
-            out[g.column] = replace(g, feeds=input_name(g))
+            stem, _, unit = input_name(g).rpartition("_")
+            names = (f"{stem}{end}_{unit}" for end in ("", *(f"_{i}" for i in range(2, len(guesses) + 2))))
+            out[g.column] = replace(g, feeds=next(n for n in names if owner.setdefault(n, g.column) == g.column))
         else:
             out[g.column] = g.without(f"{owner[key]} gives {key} already")
     return [out[g.column] for g in guesses]

@@ -385,4 +385,4 @@ def _once(names: Sequence[str]) -> list[str]:
 
 def signature(source: Source) -> frozenset[str]:
     """What tells the files of one recorder from those of another: the names of its columns."""
-    return frozenset(label.lower() for name, label in source.labels.items() if name != TIME)
+    return frozenset(" ".join(tokens(label)) for name, label in source.labels.items() if name != TIME)

@@ -27,7 +27,7 @@ from measured.importing.guess import (
     guesses,
     in_memory,
 )
-from measured.importing.source import read_source
+from measured.importing.source import read_source, signature
 from thermoscope.commands.test.new import Wishes, first_model, new_case as new
 
 N = 240
@@ -130,6 +130,48 @@ def test_tests_side_by_side_in_one_table(tmp_path, heads):
     stamps = [f"2026-03-01 {8 + k // 3600:02d}:{k // 60 % 60:02d}:{k % 60:02d}" for k in T.tolist()]
     _, runs = read(file(tmp_path, "Time,T1 (°C),T2 (°C),Time,T1 (°C),T2 (°C)", stamps, *"WH", stamps, *"HA"))
     assert len(runs) == 1
+
+
+def test_tests_one_under_another_with_their_header_again(tmp_path):
+    from openpyxl import Workbook
+
+    book = Workbook()
+    for _ in range(2):
+        book.active.append(["t [min]", "winding [°C]", "room [°C]", "I [A]"])
+        for row in zip(*(WARM[c].tolist() for c in "tWAI")):
+            book.active.append(row)
+        book.active.append([])
+        book.active.append(["Test 2", "rated"])
+    book.save(tmp_path / "a.xlsx")
+    runs = read_runs(tmp_path / "a.xlsx")
+    assert [clock.end_s for _, clock in runs] == [60 * T[-1]] * 2
+
+
+def test_files_of_one_run_and_of_two(tmp_path):
+    """A file for each signal: their clocks are one, whatever begins first. Other spellings are another test."""
+    names = {"A": "T room", "W": "T wdg", "I": "I"}
+    written(tmp_path, *(file(tmp_path, f"t [s],{h}", "t", c, name=f"{c}.csv") for c, h in names.items()))
+    assert (tmp_path / "made/tests/A.toml").read_text().count("shift_s = 0 ") == 2
+    a = file(tmp_path, "t [s],T wdg (°C),T room (°C),I (A)", *"tWAI", name="a.csv")
+    b = file(tmp_path, "t_[s],i_[A],t_room_[°C],t_wdg_[°C]", *"tIAW", name="b.csv")
+    assert signature(read_source(a)) == signature(read_source(b))
+
+
+def test_a_list_of_uneven_steps_has_no_gaps_that_are_usual(tmp_path):
+    rows = np.cumsum([0, *[2, 5, 5, 10, 3] * 6, 15, 15, 12, 5])
+    at = [np.interp(60.0 * rows, 36 * T, WARM[c]) for c in "WAI"]
+    written(tmp_path, file(tmp_path, "t [min],winding [°C],room [°C],I [A]", rows, *at))
+    assert "max_gap_s" in (tmp_path / "made/tests/a.toml").read_text()
+    assert "to_s" not in (tmp_path / "made/tests/a.toml").read_text()
+
+
+def test_what_drives_a_motor_is_not_the_motor_and_two_words_of_no_latin_letters_are_two_inputs(tmp_path):
+    header = (
+        "t [s],Motor controller temp [°C],电机控制器温度(℃),电机温度(℃),总电压(V),输入电压(V),环境(℃),I cmd [A],I [A]"
+    )
+    found, _ = read(file(tmp_path, header, "t", 22 + 0.1 * HEAT, 22 + 0.15 * HEAT, "W", 300 - HEAT, 310 - HEAT, *"AII"))
+    assert goes(found).keys() == {"电机温度(℃)", "总电压(V)", "输入电压(V)", "环境(℃)", "I [A]"}
+    assert len({*goes(found).values()}) == 5
 
 
 def test_rows_of_several_machines(tmp_path):
