@@ -580,7 +580,9 @@ def _unit(source: Source, column: str, quantity: str, unit: str) -> tuple[str, s
         if most > PERCENT:
             return "%", f"goes to {most:g}, so in no percent: only its changes count"
         return ("1" if small else "%"), "no unit: by its values"
-    first_unit = "rad/s" if "omega" in tokens(source.labels[column]) else next(iter(QUANTITIES[quantity].units))
+    words = {*tokens(source.labels[column])}
+    robot = "velocity" in words and any("effort" in tokens(label) for label in source.labels.values())  # of ROS
+    first_unit = "rad/s" if "omega" in words or robot else next(iter(QUANTITIES[quantity].units))
     return first_unit, f"{NO_UNIT}: {first_unit} is assumed"
 
 

@@ -174,6 +174,13 @@ def test_what_drives_a_motor_is_not_the_motor_and_two_words_of_no_latin_letters_
     assert len({*goes(found).values()}) == 5
 
 
+def test_a_robot_s_velocity_is_in_rad_s(tmp_path):
+    """Beside its effort, as joints are logged; any other is in rpm."""
+    for name, unit in (("effort", "rad/s"), ("torque", "rpm")):
+        found, _ = read(file(tmp_path, f"t [s],velocity,{name},motor_temperature,I [A]", "t", "n", "I", "W", "I"))
+        assert found["velocity"][0].unit == unit
+
+
 def test_rows_of_several_machines(tmp_path):
     """One after the other at every time: a test of each; rows that a state parts are of one."""
     both = {c: np.repeat(WARM[c], 2) for c in "tWAI"}
