@@ -158,7 +158,8 @@ def tests_of(source: Source) -> list[Source]:
     clocks have no time in common, or of the rows of each machine that a word in every row names."""
     groups, clocks = _groups(source)
     names = [_without_head([source.labels[n].removesuffix(f" {k}") for n in of]) for k, of in enumerate(groups, 1)]
-    spans = sorted((c.start, c.start + c.end_s) for c in clocks if c is not None and c.start is not None)
+    times = [(c.start or 0.0) + c.seconds[np.isfinite(c.seconds)] for c in clocks if c is not None]
+    spans = sorted((t[0], t[-1]) for t in times if t.size and t[0] > 0.0)  # those from zero may be of any day
     disjoint = None not in clocks and all(a[1] < b[0] for a, b in itertools.pairwise(spans))
     if groups and disjoint and len(names[0]) > 2 and names.count(names[0]) == len(names):
         new, note = names[0], f"a test from each of {len(groups)} groups of columns that say the same"
