@@ -621,7 +621,10 @@ def single(guesses: list[Guess], target: Target, labels: Mapping[str, str]) -> l
         words = {*tokens(g.column), *tokens(labels[g.column])}
         inlet = bool(g.place) and not is_spoken(g.column, INLET)
         mixed = g.place == "ambient" and len(roles_of(g.column)) > 1  # the air of a frame
-        later = {"current": bool(words & (SUPPLY | MEAN)), "power": not words & LOSS}.get(g.quantity, mixed)
+        of_machine = is_spoken(labels[g.column], MACHINE)  # before a cadence, and a battery
+        later = {"current": bool(words & (SUPPLY | MEAN)), "power": not words & LOSS, "speed": not of_machine}.get(
+            g.quantity, mixed
+        )
         other = bool(g.place) and g.place not in words
         outdoors = bool(g.place and (is_within(g.column, OUTER) or is_spoken(g.column, INSTRUMENT)))  # no room of it
         more = len(words) * bool(g.place)  # "T room" is the room before "T chamber wall" is

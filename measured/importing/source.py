@@ -140,7 +140,9 @@ def read_sources(file: Path) -> list[Source]:
 
 def explained(sources: Sequence[Source], legend: Path) -> list[Source]:
     """With names and units of columns as a file of words beside them gives them, and a note."""
-    lines = decoded(legend.read_bytes(), legend).splitlines(keepends=True)
+    lines = list[str]()
+    with suppress(InputError):  # a picture
+        lines = decoded(legend.read_bytes(), legend).splitlines(keepends=True)
     rows = split_cells(lines, max(DELIMITERS, key=lambda sign: sum(line.count(sign) for line in lines)))
     out = []
     for source in sources:
@@ -179,8 +181,11 @@ def _of_sheets(file: Path) -> list[Source]:
     largest = max(sheets, key=lambda name: len(sheets[name]) * len(sheets[name][0]), default="")
     plans = {largest: layout(sheets.get(largest, []), str(file))}
     for name in sheets.keys() - plans.keys():
-        with suppress(InputError):  # a page of words
+        try:
             plans[name] = layout(sheets[name], str(file))
+        except InputError:  # a page of words, which may say what columns are
+            names = called([*plans[largest].names], sheets[name])
+            plans[largest] = replace(plans[largest], names=tuple(names))
     signals = {name: _signals(name, plans[name], rows) for name, rows in sheets.items() if name in plans}
     signals = {name: labels for name, labels in signals.items() if labels}
     every = [label for labels in signals.values() for label in labels[1:]]
@@ -334,8 +339,9 @@ def _with_colons(cells: Sequence[Any]) -> Sequence[Any]:
         return [re.sub(r"\s*[hH]\s*", ":", c.strip()) for c in cells]
     if not all(POINTED.fullmatch(c.strip()) for c in cells[:9]):
         return cells
-    seconds = {str(c)[-2:] for c in cells}
-    return [str(c).replace(".", ":") for c in cells] if len(seconds) > 2 else cells
+    parts = [str(c).strip().split(".") for c in cells]
+    of_day = len({second for *_, second in parts}) > 2 or any(middle > "31" for _, middle, _ in parts)
+    return [":".join(one) for one in parts] if of_day else cells
 
 
 def _phase(header: str, label: str, letter: str, stems: Mapping[str, int]) -> bool:

@@ -182,6 +182,39 @@ def test_a_robot_s_velocity_is_in_rad_s(tmp_path):
         assert found["velocity"][0].unit == unit
 
 
+def test_a_sheet_of_words_says_what_channels_are_and_a_load_read_less_often_has_no_gaps(tmp_path):
+    from openpyxl import Workbook
+
+    book = Workbook()
+    book.active.append(["t [min]", "TC1 [°C]", "TC2 [°C]", "I [A]"])
+    for i, row in enumerate(zip(*(WARM[c].tolist() for c in "tWAI"))):
+        book.active.append([*row[:3], row[3] if i % 3 == 0 else None])
+    legend = book.create_sheet("Plan")
+    for row in (("Kanal", "Stelle"), ("TC1", "Wicklung U"), ("TC2", "Halle")):
+        legend.append(row)
+    book.save(tmp_path / "a.xlsx")
+    document = written(tmp_path, tmp_path / "a.xlsx")
+    assert [c["place"] for c in document["tests"][0]["columns"][:2]] == ["1-wicklung-u", "ambient"]
+    assert "max_gap_s" in (tmp_path / "made/tests/a.toml").read_text()
+
+
+def test_a_picture_beside_a_recording_is_left_out(tmp_path):
+    (tmp_path / "bench.png").write_bytes(b"\x89PNG\r\n\x1a\n" + bytes(range(256)) * 40)
+    ((source, _),) = read_runs(file(tmp_path, "t [s],winding [°C],room [°C],I [A]", *"tWAI"), tmp_path / "bench.png")
+    assert "bench.png is left out: it is not a record" in source.notes
+
+
+def test_times_of_day_with_points_every_minute(tmp_path):
+    stamps = [f"{9 + k // 60:02d}.{k % 60:02d}.00" for k in range(N)]
+    ((_, clock),) = read_runs(file(tmp_path, "Dato,Klokkeslæt,T,I", ["03-02-2025"] * N, stamps, *"WI"))
+    assert clock.end_s == 60 * (N - 1)
+
+
+def test_of_two_speeds_the_motor_s_is_the_speed(tmp_path):
+    found, _ = read(file(tmp_path, "t [s],cadence_rpm,motor_rpm,motor_temp [°C],I [A]", "t", 70 + ON, *"nWI"))
+    assert goes(found)["motor_rpm"] == "speed_rpm"
+
+
 def test_rows_of_several_machines(tmp_path):
     """One after the other at every time: a test of each; rows that a state parts are of one."""
     both = {c: np.repeat(WARM[c], 2) for c in "tWAI"}
