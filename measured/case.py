@@ -138,7 +138,7 @@ class Test:
         inputs = {**self.inputs, **{n: f * np.asarray(self.inputs[n], float) for n, f in factors.items()}}
         if self.recorded is None:
             return replace(self, inputs=inputs)
-        fine = {**self.recorded.inputs, **{n: f * self.recorded.inputs[n] for n, f in factors.items()}}
+        fine = {n: factors[n] * u if n in factors else u for n, u in self.recorded.inputs.items()}
         sampled = {n: inputs[n] if n in factors else u for n, u in self.recorded.on_grid.items()}
         return replace(self, inputs=inputs, recorded=replace(self.recorded, inputs=fine, on_grid=sampled))
 

@@ -11,6 +11,8 @@ from pathlib import Path
 
 DECLARED = "declared"
 SHORTEST = 4  # letters of a word that may be looked for inside another
+GERMAN = str.maketrans({"ä": "ae", "ö": "oe", "ü": "ue", "ß": "ss"})
+CROSSED = str.maketrans("łøđı", "lodi")  # which are no letter and an accent
 
 
 class Role(StrEnum):
@@ -72,14 +74,15 @@ def identity(role: Role | None, turns: bool | None = None) -> Identity:
 
 
 def words_of(text: str) -> frozenset[str]:
-    """Words, and long ones without their accents too, as controllers and CAN tools have to write them."""
+    """Words, and long ones as controllers and CAN tools have to write them: without accents, German ones with an e."""
     words = text.split()
-    return frozenset(words) | {plain(w) for w in words if len(w) > SHORTEST}
+    return frozenset(words) | {p for w in words if len(w) > SHORTEST for p in (plain(w), w.translate(GERMAN))}
 
 
 def plain(word: str) -> str:
-    """Latin letters without what stands over or under them."""
-    return "".join(unicodedata.normalize("NFD", c)[0] if "À" <= c <= "ſ" else c for c in word)
+    """Latin letters without what stands over, under or across them."""
+    letters = word.translate(CROSSED)
+    return "".join(unicodedata.normalize("NFD", c)[0] if "À" <= c <= "ſ" else c for c in letters)
 
 
 _VOCABULARY = tomllib.loads(Path(__file__).with_name("role_words.toml").read_text("utf-8"))

@@ -144,7 +144,7 @@ def is_unit(text: str) -> bool:
 
 
 TIMES = ("us", "ms", "s", "min", "h")  # that are also the ends of names: Wicklung US, I_sek, T_wdg_min
-BRACKETS = re.compile(r"\[([^\[\]]+)\]|\(([^()]+)\)|\{([^{}]+)\}|<([^<>]+)>")
+BRACKETS = re.compile(r"\[([^\[\]]+)\]|[(（]([^()（）]+)[)）]|\{([^{}]+)\}|<([^<>]+)>")
 INNER = re.compile(r"^([^,]+),\s*([^\s,()]+)\s*(\(.+\))$")  # Temp, °F (LGR S/N: 1, LBL: winding)
 SERIAL = re.compile(r"(?:LGR |SEN )?S/N: ?\w+(?:, )?")  # of a logger and its sensor: LGR is not a bearing
 BEFORE = re.compile(r"^(?:M\d\d:\s*|(?=[°º]))(\S+)\s+(\S.*)$")  # M00: °C Wicklung, °C Wicklung

@@ -33,6 +33,7 @@ PHRASES = {
 WOUND = frozenset({*"uvw", "rtd", "pt", "ntc", "ptc", "kty"})  # phases, and what is put between the wires of one
 PATH = re.compile(r"[/\\.:|]")  # between the names of groups: Model Root/i_phase, Motor.T_winding
 CHANNEL = re.compile(r"^(?:[A-Z]+\d+-\d+|CH ?\d+)[: ]+")  # of a logger, before what it reads
+HEAT = re.compile("(.+?)(temp|temperatu.+)|(temp)(.+)")  # motortemp, Lufttemperatur
 LAST = ("time", "timestamp", "zeit")  # of a path, which is a clock whatever it leads through
 LETTERED = re.compile(
     r"(?<![A-Za-z])[a-z]?([TP])(?!im|yp|ag|ab|es|ot|or|q|rq|as|ic|re|os|ha|he|er|ar|wm|id)[a-z]{1,2}(?![A-Za-z])"
@@ -55,7 +56,8 @@ def tokens(name: str) -> tuple[str, ...]:
         if plural and (low not in TERMS or low[:-1] in TERMS):
             low = low[:-1]  # the singular
         joint = len(low) > 2 and low[0] == "t" and low not in PARTS and low[1:] in PARTS
-        out += ["t", low[1:]] if joint else [low]
+        pair = [p for p in match.groups() if p] if (match := HEAT.fullmatch(low)) and low not in TERMS else [low]
+        out += ["t", low[1:]] if joint else pair if TERMS.issuperset(pair) else [low]
     return tuple(out)
 
 

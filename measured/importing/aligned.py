@@ -9,12 +9,13 @@ import numpy as np
 
 from geom.errors import InputError
 from measured.headers.words import RUNS, tokens
-from measured.importing.clock import HOUR_S, ZONELESS, Clock
+from measured.importing.clock import EVEN, HOUR_S, ZONELESS, Clock
 from measured.importing.guess import Guess
 from measured.importing.long_table import HOLD
 from measured.importing.source import Source, signature
 from measured.recordings.alignment import column_onset
 from measured.recordings.sheet import MAX_GAP_S
+from measured.recordings.tables import GAP, USUAL
 
 ALIKE = 0.5  # of the columns of the narrower of two files are those of the other: one recorder's
 LEAST = 0.5  # of a recording, that has to be left where a column has gaps
@@ -44,12 +45,15 @@ class Recording:
 
     @property
     def gap_s(self) -> float:
-        """The longest step between readings that is no gap: any, of a log of what changes."""
-        if not any(HOLD in note for note in self.source.notes):
-            return MAX_GAP_S
+        """The longest step between readings that is no gap: any, of a log of what changes; of uneven steps, as people
+        write them down, and of what is read less often than the rest, a few of the long ones."""
         t, columns = self.clock.seconds, [self.source.numbers(g.column) for g in self.guesses if g.used]
         rows = [np.append(np.isfinite(t[:-1] + readings[:-1]), True) for readings in columns]
-        longest = max((float(np.nanmax(np.diff(t[some]), initial=0.0)) for some in rows), default=0.0)
+        steps = [step for some in rows if (step := np.diff(t[some])).size]
+        if not any(HOLD in note for note in self.source.notes):
+            usual = [float(np.nanpercentile(step, USUAL, method="lower")) for step in steps]
+            return max([MAX_GAP_S, *(GAP * one for one in usual if one > EVEN * self.step_s)])
+        longest = max((float(np.nanmax(step)) for step in steps), default=0.0)
         return max(MAX_GAP_S, longest + 2.0 * self.step_s)  # the test is compared at instants of its own
 
 

@@ -25,7 +25,7 @@ from geom.text import visible
 from measured.headers.cells import unit_of
 from measured.headers.rows import NO_RECORD
 from measured.headers.words import COMES_OUT, GOES_IN, LOSS, quantities_of, roles_of, tokens
-from measured.importing.clock import Clock, clock_of, in_time_order, on_one_clock, runs_of
+from measured.importing.clock import Clock, clock_of, in_time_order, on_one_clock, runs_of, tests_of
 from measured.importing.draft import Draft, sample_of
 from measured.importing.guess import Guess
 from measured.importing.relations import is_equal
@@ -169,7 +169,8 @@ def read_runs(
         read_sources(legends[0])
     for legend in legends:
         sources = explained(sources, legend)
-    runs = [run for source in sources for run in runs_of(with_loss(over_room(source)), period_s)]
+    tests = [test for source in sources for test in tests_of(source)]
+    runs = [run for test in tests for run in runs_of(with_loss(over_room(test)), period_s)]
     return [with_clock(run, period_s) for run in runs]
 
 
@@ -281,7 +282,7 @@ def _sheet(draft: Draft, names: Mapping[str, str]) -> Iterator[str]:
         if value:
             yield f"{name} = {value:g}"
     if first.gap_s > MAX_GAP_S:
-        yield f"max_gap_s = {first.gap_s:g}   # rows are written where something changes"
+        yield f"max_gap_s = {first.gap_s:g}   # rows are uneven, or written where something changes"
     yield from _constants("inputs", draft.constants)
     yield from _constants("boundaries", draft.boundaries)
     if draft.squares:

@@ -13,10 +13,10 @@ from typing import Any
 
 import numpy as np
 
-from geom.arrays import Array
+from geom.arrays import Array, Ints
 from geom.errors import InputError
 from measured.headers.cells import CLOCK, COMPACT, SPAN, is_clock, is_date, is_span, unit_of
-from measured.headers.words import CLOCKS, RUNS, VOCABULARY, is_time, tokens
+from measured.headers.words import CLOCKS, RUNS, VOCABULARY, is_time, quantities_of, tokens
 from measured.importing.source import BINARY, UNNAMED, Source
 from measured.recordings.formats import EPOCH, TIME, joined
 from measured.recordings.units import QUANTITIES
@@ -57,6 +57,7 @@ SHARE = 0.9  # of the cells of a column that is a clock
 SAMPLE = 200  # cells that tell what a column is
 LEAST = 3  # rows with a time
 FEWEST = 20  # rows of a run that is a test
+MACHINES = 24  # in one file
 EVEN = 1.5  # the longest step over the usual one of a record without gaps
 FROM_ZERO = 2  # "0:00" and "0:01" begin a span of minutes and seconds; a time of day begins anywhere
 SHORT_STEP_S = 0.02  # between rows of a thermal test: nobody records faster
@@ -116,12 +117,9 @@ def on_one_clock(source: Source) -> Source:
     As it is where the clocks are one, or begin apart: those are two clocks of one row.  InputError where signals that
     share no rows share no time either.
     """
-    names = list(source.cells)
-    at = [i for i, name in enumerate(names) if is_second_clock(source, name)]
-    groups = [names[a:b] for a, b in itertools.pairwise([*at, len(names)])]
-    if len(groups) < 2 or at[0] or any(len(group) < 2 for group in groups):
+    groups, clocks = _groups(source)
+    if not groups or any(len(group) < 2 for group in groups):
         return source
-    clocks = [_guessed_clock(replace(source, cells={name: source.cells[name] for name in group})) for group in groups]
     seconds = [c.seconds + (c.start or 0.0) for c in clocks if c is not None]
     begins = [s[np.isfinite(s)][:2] for s in seconds]
     if len(begins) < len(groups) or any(b.size < 2 for b in begins):
@@ -145,6 +143,55 @@ def on_one_clock(source: Source) -> Source:
     return replace(source, cells=cells, units=units, labels=labels, notes=(*source.notes, note), values={})
 
 
+def _groups(source: Source) -> tuple[list[list[str]], list[Clock | None]]:
+    """Columns from each of several clocks on, and those clocks; none where another column stands before them."""
+    names = list(source.cells)
+    at = [i for i, name in enumerate(names) if is_second_clock(source, name)]
+    if at[:1] != [0] or len(at) < 2:
+        return [], []
+    groups = [names[a:b] for a, b in itertools.pairwise([*at, len(names)])]
+    return groups, [_guessed_clock(replace(source, cells={n: source.cells[n] for n in group})) for group in groups]
+
+
+def tests_of(source: Source) -> list[Source]:
+    """The source, or with a note a test of each of its groups of columns that say the same behind a clock, where those
+    clocks have no time in common, or of the rows of each machine that a word in every row names."""
+    groups, clocks = _groups(source)
+    names = [_without_head([source.labels[n].removesuffix(f" {k}") for n in of]) for k, of in enumerate(groups, 1)]
+    times = [(c.start or 0.0) + c.seconds[np.isfinite(c.seconds)] for c in clocks if c is not None]
+    spans = sorted((t[0], t[-1]) for t in times if t.size and t[0] > 0.0)  # those from zero may be of any day
+    disjoint = None not in clocks and all(a[1] < b[0] for a, b in itertools.pairwise(spans))
+    if groups and disjoint and len(names[0]) > 2 and names.count(names[0]) == len(names):
+        new, note = names[0], f"a test from each of {len(groups)} groups of columns that say the same"
+        parts = [dict(zip(new, (source.cells[n] for n in group), strict=True)) for group in groups]
+        units = dict(zip(new, (source.units[n] for n in groups[0]), strict=True))
+        whole = replace(source, labels=dict(zip(new, new, strict=True)), units=units)
+        rows = [np.flatnonzero(np.isfinite(clock.seconds)) for clock in clocks if clock]
+        return [_part(replace(whole, cells=cells), some, note) for cells, some in zip(parts, rows, strict=True)]
+    each = sum("temperature" in quantities_of(label) for label in source.labels.values()) > 1  # no sensor's alone
+    words = {n: np.array([*map(str, source.cells[n])]) for n in source.cells if each and not source.is_numeric(n)}
+    words = {n: w for n, w in words.items() if 1 < len({*w.tolist()}) <= MACHINES}
+    clock = _guessed_clock(source) if words else None
+    for name, of in words.items() if clock is not None and not (np.diff(clock.seconds) > 0).all() else ():
+        rows = [np.flatnonzero(of == word) for word in dict.fromkeys(of.tolist())]
+        if clock and all(r.size >= FEWEST and (np.diff(clock.seconds[r]) > 0).all() for r in rows):
+            return [_part(source, some, f"a test from the rows of each of {len(rows)} '{name}'") for some in rows]
+    return [source]
+
+
+def _without_head(labels: Sequence[str]) -> list[str]:
+    """Without the words that all of them begin with."""
+    words = [label.split() for label in labels]
+    same = sum(1 for _ in itertools.takewhile(lambda level: len({*level}) == 1, zip(*words, strict=False)))
+    return [" ".join(one[same:] or one) for one in words]
+
+
+def _part(source: Source, rows: Sequence[int] | Ints, note: str) -> Source:
+    """Some of its rows, and a note."""
+    cells = {n: c[rows] if isinstance(c, np.ndarray) else [c[i] for i in rows] for n, c in source.cells.items()}
+    return replace(source, cells=cells, notes=(*source.notes, f"{source.file.name}: {note}"), values={})
+
+
 def runs_of(source: Source, period_s: float | None = None) -> list[Source]:
     """The source, or a part from each row on in which its clock, or where it has none its number of the run, says that
     it starts anew; with a note.
@@ -158,19 +205,17 @@ def runs_of(source: Source, period_s: float | None = None) -> list[Source]:
     anew = np.isfinite(number).all() and np.unique(number).size == at.size + 1
     steps = np.diff(clock.seconds) if clock else np.empty(0)
     if clock is not None and not (anew and at.size and bool((steps[at - 1] > 2 * np.nanmedian(steps)).all())):
-        t = clock.seconds
-        at = np.flatnonzero(np.diff(t) < 0) + 1
+        rows = np.flatnonzero(np.isfinite(clock.seconds))  # not a header that comes again
+        t = np.interp(np.arange(source.rows), rows, clock.seconds[rows]) if rows.size else clock.seconds
+        at = rows[1:][np.diff(clock.seconds[rows]) < 0]
         usual = float(np.nanmedian(np.abs(np.diff(t)))) if t.size > 1 else 0.0
         anew = clock.start is None and bool((np.abs(t[at] - t[:1]) <= usual).all())
         anew &= not any(abs(t[k - 1] + usual - turn) <= usual for k in at[:1] for turn in (60.0, HOUR_S, DAY_S))
     edges = [0, *at.tolist(), source.rows]
     if not (anew and at.size) or min(np.diff(edges)) < FEWEST or in_time_order(source) is not source:
         return [source]
-    note = f"{source.file.name}: starts anew in row {edges[1] + 1}: {len(edges) - 1} tests, one from each start on"
-    return [
-        replace(source, cells={n: c[a:b] for n, c in source.cells.items()}, notes=(*source.notes, note), values={})
-        for a, b in itertools.pairwise(edges)
-    ]
+    note = f"starts anew in row {edges[1] + 1}: {len(edges) - 1} tests, one from each start on"
+    return [_part(source, range(a, b), note) for a, b in itertools.pairwise(edges)]
 
 
 def in_time_order(source: Source) -> Source:
@@ -188,11 +233,9 @@ def in_time_order(source: Source) -> Source:
     counts_down = clock.start is None and back > step.size / 2
     if not 0 < step.max() / EVEN <= np.median(step) <= step.min() * EVEN or counts_down:
         return source
-    cells = {n: c[order] if isinstance(c, np.ndarray) else [c[i] for i in order] for n, c in source.cells.items()}
-    note = (
-        f"{source.file.name}: the clock runs back {back} times; sorted by time its rows are {np.median(step):g} s apart"
+    return _part(
+        source, order, f"the clock runs back {back} times; sorted by time its rows are {np.median(step):g} s apart"
     )
-    return replace(source, cells=cells, notes=(*source.notes, note), values={})
 
 
 def checked(clock: Clock, source: Source) -> Clock:
@@ -593,6 +636,10 @@ def _scaled(source: Source, column: str) -> Clock:
     """Seconds by the unit of the file; without one by size and step: what is likely is taken and doubted aloud."""
     values, unit = source.numbers(column), _unit_of_time(source, column)
     finite = values[np.isfinite(values)]
+    read = max(
+        (np.isfinite(source.numbers(c)) for c in source.cells if c != column), key=np.sum, default=np.isfinite(values)
+    )
+    finite = at if (at := values[read & np.isfinite(values)]).size > 1 else finite  # rows may hold a signal each
     first, step = float(finite[0]), float(np.median(np.diff(finite))) if finite.size > 1 else 0.0
     for size, factor in UNIX.items():
         if size <= first < 5 * size and (not unit or TIME_UNITS[unit] == factor):

@@ -198,7 +198,7 @@ def _without_extremes(source: Source, every: list[Guess]) -> list[Guess]:
     words = {g.column: {*tokens(source.labels[g.column])} for g in every if g.used}
     means = [words[c] - MEAN for c in words if not words[c] & EXTREME]
     parts = [words[g.column] for g in every if g.place and not of_edge(roles_of(source.labels[g.column]))]
-    bases = [other for other in parts if any(len(word) > 1 for word in other - QUANTITY["temperature"])]
+    bases = [other - READ for other in parts if any(len(w) > 1 for w in other - READ - QUANTITY["temperature"])]
     for i, g in enumerate(every):
         mine = words.get(g.column, set())
         if mine & EXTREME and mine - EXTREME in means:
@@ -436,6 +436,8 @@ def _left_out(source: Source, column: str) -> str:
     if unit_text and not unit:
         of_nothing = is_unit(unit_text) or not quantities
         return f"its unit '{unit_text}' is {'of nothing a model reads' if of_nothing else UNKNOWN}"
+    if unit == "%" and quantities == ["temperature"]:
+        return "a temperature in percent: of what?"
     words = set(tokens(label)) | set(re.findall(r"[a-z]+", label.lower()))
     if is_rise(label) and not words & QUANTITY["power"]:
         return "a difference of temperatures, not a temperature"
@@ -578,7 +580,9 @@ def _unit(source: Source, column: str, quantity: str, unit: str) -> tuple[str, s
         if most > PERCENT:
             return "%", f"goes to {most:g}, so in no percent: only its changes count"
         return ("1" if small else "%"), "no unit: by its values"
-    first_unit = "rad/s" if "omega" in tokens(source.labels[column]) else next(iter(QUANTITIES[quantity].units))
+    words = {*tokens(source.labels[column])}
+    robot = "velocity" in words and any("effort" in tokens(label) for label in source.labels.values())  # of ROS
+    first_unit = "rad/s" if "omega" in words or robot else next(iter(QUANTITIES[quantity].units))
     return first_unit, f"{NO_UNIT}: {first_unit} is assumed"
 
 
@@ -617,7 +621,10 @@ def single(guesses: list[Guess], target: Target, labels: Mapping[str, str]) -> l
         words = {*tokens(g.column), *tokens(labels[g.column])}
         inlet = bool(g.place) and not is_spoken(g.column, INLET)
         mixed = g.place == "ambient" and len(roles_of(g.column)) > 1  # the air of a frame
-        later = {"current": bool(words & (SUPPLY | MEAN)), "power": not words & LOSS}.get(g.quantity, mixed)
+        of_machine = is_spoken(labels[g.column], MACHINE)  # before a cadence, and a battery
+        later = {"current": bool(words & (SUPPLY | MEAN)), "power": not words & LOSS, "speed": not of_machine}.get(
+            g.quantity, mixed
+        )
         other = bool(g.place) and g.place not in words
         outdoors = bool(g.place and (is_within(g.column, OUTER) or is_spoken(g.column, INSTRUMENT)))  # no room of it
         more = len(words) * bool(g.place)  # "T room" is the room before "T chamber wall" is
@@ -637,7 +644,9 @@ def single(guesses: list[Guess], target: Target, labels: Mapping[str, str]) -> l
             continue
         of_part = g.quantity == "power" and (roles_of(g.column) or LOSS & {*tokens(labels[owner[key]])})
         if g.feeds and (g.feeds not in target.inputs or of_part) and not is_setpoint(g.column):  # of copper or iron
-            out[g.column] = replace(g, feeds=input_name(g))
+            stem, _, unit = input_name(g).rpartition("_")
+            names = (f"{stem}{end}_{unit}" for end in ("", *(f"_{i}" for i in range(2, len(guesses) + 2))))
+            out[g.column] = replace(g, feeds=next(n for n in names if owner.setdefault(n, g.column) == g.column))
         else:
             out[g.column] = g.without(f"{owner[key]} gives {key} already")
     return [out[g.column] for g in guesses]

@@ -33,7 +33,7 @@ TEXT = 0.2  # share of cells that are words from which a column holds no reading
 BINARY = (".tdms", ".mf4", ".parquet", ".mat", *(f".{name}" for name in READERS))
 MODELS = (".toml", ".step", ".stp", ".mot", ".dxf")
 UNNAMED = re.compile(r"column \d+")
-ONE_OF = re.compile(r"(?i)(?:phase|ph|coil|spule|sensor|channel|ch|kanal|strang)$")  # and a letter after it
+ONE_OF = re.compile(r"(?i)(?:phase|coil|spule|sensor|channel|kanal|strang|(?<![^\W\d_])[pc]h)$")  # before a letter
 BRACKETED = re.compile(r"(.*?)\s*[\[(]([^\[\]()]*)[\])]")
 SCALED = re.compile(
     r"(?:[x×*]\s*(?=0|1/|1e))?(1/(?=1))?(0[.,]0*1|1[eE]-\d|10+)\s*([^\d\s.,].*)"
@@ -140,7 +140,9 @@ def read_sources(file: Path) -> list[Source]:
 
 def explained(sources: Sequence[Source], legend: Path) -> list[Source]:
     """With names and units of columns as a file of words beside them gives them, and a note."""
-    lines = decoded(legend.read_bytes(), legend).splitlines(keepends=True)
+    lines = list[str]()
+    with suppress(InputError):  # a picture
+        lines = decoded(legend.read_bytes(), legend).splitlines(keepends=True)
     rows = split_cells(lines, max(DELIMITERS, key=lambda sign: sum(line.count(sign) for line in lines)))
     out = []
     for source in sources:
@@ -179,8 +181,11 @@ def _of_sheets(file: Path) -> list[Source]:
     largest = max(sheets, key=lambda name: len(sheets[name]) * len(sheets[name][0]), default="")
     plans = {largest: layout(sheets.get(largest, []), str(file))}
     for name in sheets.keys() - plans.keys():
-        with suppress(InputError):  # a page of words
+        try:
             plans[name] = layout(sheets[name], str(file))
+        except InputError:  # a page of words, which may say what columns are
+            names = called([*plans[largest].names], sheets[name])
+            plans[largest] = replace(plans[largest], names=tuple(names))
     signals = {name: _signals(name, plans[name], rows) for name, rows in sheets.items() if name in plans}
     signals = {name: labels for name, labels in signals.items() if labels}
     every = [label for labels in signals.values() for label in labels[1:]]
@@ -334,8 +339,9 @@ def _with_colons(cells: Sequence[Any]) -> Sequence[Any]:
         return [re.sub(r"\s*[hH]\s*", ":", c.strip()) for c in cells]
     if not all(POINTED.fullmatch(c.strip()) for c in cells[:9]):
         return cells
-    seconds = {str(c)[-2:] for c in cells}
-    return [str(c).replace(".", ":") for c in cells] if len(seconds) > 2 else cells
+    parts = [str(c).strip().split(".") for c in cells]
+    of_day = len({second for *_, second in parts}) > 2 or any(middle > "31" for _, middle, _ in parts)
+    return [":".join(one) for one in parts] if of_day else cells
 
 
 def _phase(header: str, label: str, letter: str, stems: Mapping[str, int]) -> bool:
@@ -385,4 +391,4 @@ def _once(names: Sequence[str]) -> list[str]:
 
 def signature(source: Source) -> frozenset[str]:
     """What tells the files of one recorder from those of another: the names of its columns."""
-    return frozenset(label.lower() for name, label in source.labels.items() if name != TIME)
+    return frozenset(" ".join(tokens(label)) for name, label in source.labels.items() if name != TIME)

@@ -27,7 +27,7 @@ from measured.importing.guess import (
     guesses,
     in_memory,
 )
-from measured.importing.source import read_source
+from measured.importing.source import read_source, signature
 from thermoscope.commands.test.new import Wishes, first_model, new_case as new
 
 N = 240
@@ -104,6 +104,151 @@ def test_what_is_made_of_a_reading_and_a_current_before_the_inverter_give_way(tm
     assert found["OTI_A"][0].doubt == "a state, by its values"
     found, _ = read(file(tmp_path, "t [s],winding [°C],room [°C],I_rms_mean,I_rms_rms", "t", "W", "A", "I", "I"))
     assert "I_rms_rms" in goes(found)
+
+
+def test_what_was_not_measured_where_something_else_was(tmp_path):
+    """A model beside the readings, by its name or by theirs; an odometer, and a temperature in percent, are neither."""
+    header = "t [s],winding measured [°C],winding LPTN [°C],frame meas [°C],frame XQZ [°C],odometer_km,Temp INV [%]"
+    model = [WARM[c] + 3 * np.sin(T) for c in "WH"]
+    found, _ = read(file(tmp_path, header, "t", "W", model[0], "H", model[1], 1e4 + T, 20 + 0.3 * HEAT))
+    assert goes(found).keys() == {"winding measured [°C]", "frame meas [°C]", "frame XQZ [°C]"}
+    assert found["winding LPTN [°C]"][0].doubt == "modelled, not read"
+    assert found["frame XQZ [°C]"][0].doubt == VARIANT
+
+
+@pytest.mark.parametrize("heads", [("", ""), ("Test 1: rated ", "Test 2: steps ")])
+def test_tests_side_by_side_in_one_table(tmp_path, heads):
+    """The second is shorter; two loggers that ran at one time are no two tests."""
+    header = ",".join(
+        f"{head}{name}" for head in heads for name in ("t (min)", "T_winding (°C)", "T_room (°C)", "I (A)")
+    )
+    short = {c: [f"{x:.1f}" for x in WARM[c][:200]] + [""] * (N - 200) for c in "tWAI"}
+    _, runs = read(file(tmp_path, header, *"tWAI", *(short[c] for c in "tWAI")))
+    assert [source.rows for source, _ in runs] == [N, 200]
+    assert [clock.end_s for _, clock in runs] == [60 * T[-1], 60 * T[199]]
+    assert [source.labels["T_winding"] for source, _ in runs] == ["T_winding"] * 2
+    for day in ("2026-03-01 ", ""):
+        stamps = [f"{day}{8 + k // 3600:02d}:{k // 60 % 60:02d}:{k % 60:02d}" for k in T.tolist()]
+        _, runs = read(file(tmp_path, "Time,T1 (°C),T2 (°C),Time,T1 (°C),T2 (°C)", stamps, *"WH", stamps, *"HA"))
+        assert len(runs) == 1
+
+
+def test_tests_one_under_another_with_their_header_again(tmp_path):
+    from openpyxl import Workbook
+
+    book = Workbook()
+    for _ in range(2):
+        book.active.append(["t [min]", "winding [°C]", "room [°C]", "I [A]"])
+        for row in zip(*(WARM[c].tolist() for c in "tWAI")):
+            book.active.append(row)
+        book.active.append([])
+        book.active.append(["Test 2", "rated"])
+    book.save(tmp_path / "a.xlsx")
+    runs = read_runs(tmp_path / "a.xlsx")
+    assert [clock.end_s for _, clock in runs] == [60 * T[-1]] * 2
+
+
+def test_files_of_one_run_and_of_two(tmp_path):
+    """A file for each signal: their clocks are one, whatever begins first. Other spellings are another test."""
+    names = {"A": "T room", "W": "T wdg", "I": "I"}
+    written(tmp_path, *(file(tmp_path, f"t [s],{h}", "t", c, name=f"{c}.csv") for c, h in names.items()))
+    assert (tmp_path / "made/tests/A.toml").read_text().count("shift_s = 0 ") == 2
+    a = file(tmp_path, "t [s],T wdg (°C),T room (°C),I (A)", *"tWAI", name="a.csv")
+    b = file(tmp_path, "t_[s],i_[A],t_room_[°C],t_wdg_[°C]", *"tIAW", name="b.csv")
+    assert signature(read_source(a)) == signature(read_source(b))
+
+
+def test_a_list_of_uneven_steps_has_no_gaps_that_are_usual(tmp_path):
+    rows = np.cumsum([0, *[2, 5, 5, 10, 3] * 6, 15, 15, 12, 5])
+    at = [np.interp(60.0 * rows, 36 * T, WARM[c]) for c in "WAI"]
+    written(tmp_path, file(tmp_path, "t [min],winding [°C],room [°C],I [A]", rows, *at))
+    assert "max_gap_s" in (tmp_path / "made/tests/a.toml").read_text()
+    assert "to_s" not in (tmp_path / "made/tests/a.toml").read_text()
+
+
+def test_what_drives_a_motor_is_not_the_motor_and_two_words_of_no_latin_letters_are_two_inputs(tmp_path):
+    header = (
+        "t [s],Motor controller temp [°C],电机控制器温度(℃),电机温度(℃),总电压(V),输入电压(V),环境(℃),I cmd [A],I [A]"
+    )
+    found, _ = read(file(tmp_path, header, "t", 22 + 0.1 * HEAT, 22 + 0.15 * HEAT, "W", 300 - HEAT, 310 - HEAT, *"AII"))
+    assert goes(found).keys() == {"电机温度(℃)", "总电压(V)", "输入电压(V)", "环境(℃)", "I [A]"}
+    assert len({*goes(found).values()}) == 5
+
+
+def test_a_robot_s_velocity_is_in_rad_s(tmp_path):
+    """Beside its effort, as joints are logged; any other is in rpm."""
+    for name, unit in (("effort", "rad/s"), ("torque", "rpm")):
+        found, _ = read(file(tmp_path, f"t [s],velocity,{name},motor_temperature,I [A]", "t", "n", "I", "W", "I"))
+        assert found["velocity"][0].unit == unit
+
+
+def test_a_sheet_of_words_says_what_channels_are_and_a_load_read_less_often_has_no_gaps(tmp_path):
+    from openpyxl import Workbook
+
+    book = Workbook()
+    book.active.append(["t [min]", "TC1 [°C]", "TC2 [°C]", "I [A]"])
+    for i, row in enumerate(zip(*(WARM[c].tolist() for c in "tWAI"))):
+        book.active.append([*row[:3], row[3] if i % 3 == 0 else None])
+    legend = book.create_sheet("Plan")
+    for row in (("Kanal", "Stelle"), ("TC1", "Wicklung U"), ("TC2", "Halle")):
+        legend.append(row)
+    book.save(tmp_path / "a.xlsx")
+    document = written(tmp_path, tmp_path / "a.xlsx")
+    assert [c["place"] for c in document["tests"][0]["columns"][:2]] == ["1-wicklung-u", "ambient"]
+    assert "max_gap_s" in (tmp_path / "made/tests/a.toml").read_text()
+
+
+def test_a_picture_beside_a_recording_is_left_out(tmp_path):
+    (tmp_path / "bench.png").write_bytes(b"\x89PNG\r\n\x1a\n" + bytes(range(256)) * 40)
+    ((source, _),) = read_runs(file(tmp_path, "t [s],winding [°C],room [°C],I [A]", *"tWAI"), tmp_path / "bench.png")
+    assert "bench.png is left out: it is not a record" in source.notes
+
+
+def test_times_of_day_with_points_every_minute(tmp_path):
+    stamps = [f"{9 + k // 60:02d}.{k % 60:02d}.00" for k in range(N)]
+    ((_, clock),) = read_runs(file(tmp_path, "Dato,Klokkeslæt,T,I", ["03-02-2025"] * N, stamps, *"WI"))
+    assert clock.end_s == 60 * (N - 1)
+
+
+def test_of_two_speeds_the_motor_s_is_the_speed(tmp_path):
+    found, _ = read(file(tmp_path, "t [s],cadence_rpm,motor_rpm,motor_temp [°C],I [A]", "t", 70 + ON, *"nWI"))
+    assert goes(found)["motor_rpm"] == "speed_rpm"
+
+
+def test_rows_of_several_machines(tmp_path):
+    """One after the other at every time: a test of each; rows that a state parts are of one."""
+    both = {c: np.repeat(WARM[c], 2) for c in "tWAI"}
+    header = "t [s],Turbine,T_winding [°C],T_room [°C],I [A]"
+    _, runs = read(file(tmp_path, header, both["t"], ["T01", "T06"] * N, *(both[c] for c in "WAI")))
+    assert [(source.rows, clock.end_s, clock.doubt) for source, clock in runs] == [(N, T[-1], "")] * 2
+    assert runs[0][0].numbers("T_winding [°C]") == pytest.approx(WARM["W"], abs=0.006)
+    _, runs = read(file(tmp_path, header, "t", ["on", "off"] * (N // 2), *"WAI"))
+    assert len(runs) == 1
+
+
+def test_a_clock_without_a_unit_in_a_log_of_a_signal_a_row(tmp_path):
+    """Rows 90 apart that read each signal every 1000: those are milliseconds."""
+    rows = [(1000 * k + 90 * j, j) for k in range(N) for j in range(3)]
+    cells = [[f"{WARM[c][k // 3]:.2f}" if j == i else "" for k, (_, j) in enumerate(rows)] for i, c in enumerate("WAI")]
+    _, runs = read(file(tmp_path, "Time,T_winding [°C],T_room [°C],I [A]", [t for t, _ in rows], *cells))
+    ((_, clock),) = runs
+    assert clock.doubt == "no unit of 'Time': ms are assumed"
+
+
+def test_brackets_of_a_chinese_sheet_and_the_letters_of_a_channel_in_a_word(tmp_path):
+    header = "t [s],绕组（℃）,环境（℃）,电流（A）,转速（rpm）,Pmech/W"
+    found, _ = read(file(tmp_path, header, *"tWAIn", 100 + 3 * HEAT))
+    assert {g.doubt for g, _ in found.values()} == {""}
+    assert found["Pmech/W"][0].unit == "W"
+
+
+def test_names_that_two_words_were_joined_to(tmp_path):
+    header = "t [s],motortemp,settemp,cputemp,vehicle_speed,wind speed,room [°C],I [A]"
+    found, _ = read(file(tmp_path, header, "t", "W", "H", WARM["W"] + 1.0, "n", "I", "A", "I"))
+    assert goes(found)["motortemp"] == "motor"
+    assert not {"settemp", "cputemp"} & goes(found).keys()
+    assert {found[c][0].quantity for c in ("vehicle_speed", "wind speed")} == {"vehicle_speed"}
+    assert {found[c][0].quantity for c in ("motortemp", "settemp")} == {"temperature"}
 
 
 def test_other_devices_are_no_parts_and_the_motor_is_its_winding(tmp_path):
@@ -456,6 +601,12 @@ def test_a_labview_file_has_its_units_in_its_second_head_and_no_groups(tmp_path)
         ("Korpus", Role.HOUSING),
         ("코일 온도", Role.WINDING),
         ("실내 온도", Role.AMBIENT),
+        ("T_Ruecklauf", Role.COOLANT),
+        ("T_lozysko", Role.BEARING),
+        ("kolnierz", Role.END_SHIELD),
+        ("EmTRtr_T", Role.ROTOR),
+        ("airtemp", Role.AMBIENT),
+        ("template", Role.TEST_BED),  # a plate, and no temperature
     ],
 )
 def test_names_of_parts_in_the_words_of_other_shops(name, role):

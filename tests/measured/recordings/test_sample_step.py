@@ -11,6 +11,7 @@ from lumped.integration.signals import Signals
 from lumped.integration.simulate import Record, simulate
 from lumped.model.build import bare_network, node_link, node_source
 from lumped.transfer.laws import Fixed, InputPower
+from measured.case import Recorded, Test
 from measured.sensors.sampling import Modes, interpolation_error, sample_step, sampled
 from thermoscope.case_folder.folder import load_case
 from validation import diagnose
@@ -130,3 +131,13 @@ def test_modes_and_what_a_mean_leaves_of_them():
         mean = quad(lambda t, x=x: -np.expm1(-x * t), 0.0, 0.5)[0]
         assert interpolation_error(np.array([x]))[0] == pytest.approx(abs(mean + np.expm1(-x) / 12.0), abs=1e-9)
     assert interpolation_error(np.array([1e-6]))[0] == pytest.approx(1e-6 / 24.0, rel=1e-3)
+
+
+def test_an_input_that_has_no_finer_steps_is_scaled_too():
+    """An alternating current is known by its heat in each sample alone, beside inputs as they were recorded."""
+    grid, fine = np.arange(4.0), np.linspace(0.0, 3.0, 13)
+    inputs = {"current_A": 3.0 + grid, "speed_rpm": 100.0 * grid}
+    recorded = Recorded(fine, {"speed_rpm": 100.0 * fine}, grid, {"speed_rpm": inputs["speed_rpm"]})
+    more = Test("swinging", "calibrate", grid, inputs, {}, (), recorded=recorded).scaled({"current_A": 2.0})
+    assert more.signals["current_A"] == pytest.approx(2.0 * inputs["current_A"])
+    assert more.signals["speed_rpm"] == pytest.approx(inputs["speed_rpm"])
