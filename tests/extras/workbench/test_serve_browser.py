@@ -6,7 +6,6 @@ Screenshots are kept in out/screenshots.
 import json
 import os
 import re
-import runpy
 import shutil
 import subprocess
 import sys
@@ -15,7 +14,7 @@ from pathlib import Path
 from urllib.parse import urljoin
 
 import pytest
-from foreign_machines import motor_cad
+from foreign_machines import motor_cad, whole
 from test_serve_live import RUN as FIRST
 
 from geom.machine_file import load_machine
@@ -34,7 +33,7 @@ pytestmark = [
     pytest.mark.skipif(BROWSER is None, reason="needs a browser: apt-get install -y chromium"),
 ]
 TESTS = Path(__file__).parents[2]
-SERVER, DRAWINGS = TESTS / "shared" / "motor_case.py", TESTS / "geom" / "importing" / "drawings.py"
+SERVER = TESTS / "shared" / "motor_case.py"
 LONG = 400_000  # ms; a shared computer may be slow
 
 
@@ -254,7 +253,7 @@ def drop(page, *files):
 
 def test_machines_of_other_programs_are_imported_where_they_are_dropped(page, served, tmp_path):
     """Beside a recording too; a drawing without the length of its stack says what it lacks."""
-    home, sheet = served[1].parent, runpy.run_path(DRAWINGS)["whole"]()
+    home, sheet = served[1].parent, whole()
     drawing = sheet.saved(tmp_path).read_text()
     sheet.space.add_text("stack_mm = 120")
     sized = sheet.saved(tmp_path, "sized.dxf").read_text()
