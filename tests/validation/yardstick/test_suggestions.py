@@ -164,7 +164,8 @@ def test_a_lasting_fault_that_is_left_hides_nothing_after_it_where_nobody_is_ask
     poorer = without(case, ("body", "ambient"))
     names = ("sensor.gain@T_body", "convection.constant@body")
     rows = tuple(Candidate(n, 9.0, 3.0, 1.0, "1", (0.5, 1.5), "named", probability=0.99) for n in names)
-    said = Said(((names[0],), (names[1],)), (), "several", names, rows, "two are missing")
+    odds = (SimpleNamespace(effects=names, probability=0.99),)
+    said = Said(((names[0],), (names[1],)), odds, "several", names, rows, "two are missing")
     step, _, why = _added(poorer, Supervisor(singletons, suggest=suggest), said, 0.0, [], no_progress)
     assert (step and step.effect, bool(why)) == (name, name is None)
 
