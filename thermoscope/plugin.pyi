@@ -330,7 +330,7 @@ from thermoscope.commands.stored_diagnosis import (
 )
 from thermoscope.commands.test.new import drafts_of as drafts_of, model_of_case as model_of_case, save_case as save_case
 from thermoscope.commands.use.simulate import short_of as short_of
-from thermoscope.console.summary import Summary as Summary
+from thermoscope.console.summary import Summary as Summary, sentences as sentences
 from thermoscope.console.options import (
     Case as CaseArgument,
     HotLimit as HotLimitOption,

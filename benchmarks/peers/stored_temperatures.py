@@ -22,6 +22,7 @@ from scipy.optimize import least_squares
 
 from geom import import_draft
 from geom.arrays import Array
+from geom.importing.draft import Draft
 from geom.machine_file import machine_from
 from lumped.build.pipeline import build
 from lumped.integration.steady import steady
@@ -47,9 +48,8 @@ PAGE = ROOT / "docs" / "how-to" / "import.md"
 NAMES = 3  # films or contacts that are told
 
 
-def network_of(path: Path) -> tuple[Network, dict[str, float], dict[str, float]]:
+def network_of(draft: Draft) -> tuple[Network, dict[str, float], dict[str, float]]:
     """The network with a loss of 1 W at every place that may be heated; its inputs; its boundaries (degC)."""
-    draft = import_draft(path)
     sections = draft.sections()
     sections["losses"] = {f"at-{k}": {"kind": "stray", "at": at, "P_W": 1.0} for k, at in enumerate(HEATED)}
     machine = machine_from(sections, draft.name)
@@ -99,8 +99,9 @@ def rms(ratio: Array) -> float:
 
 def measured(path: Path) -> dict[str, Any]:
     """Stored and own rises, the losses that were found, and what would have to differ."""
-    model = network_of(path)
-    readings, inlet = import_draft(path).readings, model[2]["coolant"]
+    draft = import_draft(path)
+    model, readings = network_of(draft), draft.readings
+    inlet = model[2]["coolant"]
     stored = np.array([readings[name] for name in PLACES]) - inlet
     losses, ratio = nearest_losses(model, stored)
     rows = [

@@ -93,14 +93,13 @@ def candidates(diagnosis: Mapping[str, Any], effects: Collection[str]) -> list[R
 def conclusion(diagnosis: Mapping[str, Any]) -> Row:
     """What is missing, as the command says it, and what the tests cannot see."""
     tone, _ = th.verdict(diagnosis, None)
-    hidden, words = [h["words"] for h in diagnosis["cannot_see"]], diagnosis["words"]
+    hidden, (words,) = [h["words"] for h in diagnosis["cannot_see"]], th.sentences([diagnosis["words"]])
     further_tests = [
         f"{o['kind']} {o['what']}" + (f" ({o['how']})" if o["how"] else "") + f": separates {', '.join(o['separates'])}"
         for o in th.offers(diagnosis)[:3]
     ]
     hidden_words = f"{th.counted(len(hidden), 'effect')} could be there unseen, e.g. {', '.join(hidden[:4])}."
-    sentence = f"{words[:1].upper()}{words[1:]}."
-    return {"tone": tone, "words": sentence, "unseen": hidden_words * bool(hidden), "ahead": further_tests}
+    return {"tone": tone, "words": words, "unseen": hidden_words * bool(hidden), "ahead": further_tests}
 
 
 def percent(value: float, whole: float) -> float:
