@@ -349,6 +349,7 @@ def test_the_machine_is_drawn_by_the_browser_and_goes_along_with_the_page(root, 
         assert frame.is_hidden("#fault")
         assert frame.is_hidden("#test")  # the page's own list stands above
         until(frame, "Boolean(data.errors && viewer.network)")  # they follow, and leave the machine as it is
+        until(frame, "viewer.smooth && !viewer.dirty && !viewer.pending")  # else places are of the frame's size before
         assert tab.evaluate("trame.state.get('viewer_rest')")
         for channel, x, y in frame.evaluate(PLACES):
             box = tab.locator("#viewer").bounding_box()
