@@ -11,10 +11,10 @@ from typing import Any
 
 from geom.description.bases import based
 from geom.description.machine import ENVELOPE, SECTIONS, Machine, check_ratings
-from geom.description.materials import material
+from geom.description.materials import read_entry
 from geom.description.names import checked_name
 from geom.description.outlines import read_outlines
-from geom.description.part import Part
+from geom.description.part import AS_IN_TABLE, Part
 from geom.description.reading import read_geometry
 from geom.description.toml_file import read_toml
 from geom.errors import InputError
@@ -232,9 +232,17 @@ def _family(header: Mapping[str, Any], where: str) -> Family:
 
 
 def _with_materials(parts: tuple[Part, ...], materials: Mapping[str, Any], where: str) -> tuple[Part, ...]:
-    names = [part.name for part in parts]
-    for part, name in materials.items():
+    names = [part.name for part in parts if part.solid]
+    for part in materials:
         if part not in names:
             raise InputError(f"unknown part {part!r}", f"{where} [materials]", f"known: {', '.join(names)}")
-        material(name, f"{where} [materials]")
-    return tuple(replace(part, material=materials.get(part.name, part.material)) for part in parts)
+    entries = {
+        part.name: read_entry(materials[part.name], part.material, f"{where} [materials] {part.name}")
+        for part in parts
+        if part.name in materials
+    }
+    return tuple(
+        replace(part, material=name, properties=properties)
+        for part in parts
+        for name, properties in [entries.get(part.name, (part.material, AS_IN_TABLE))]
+    )

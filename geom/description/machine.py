@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from geom.description.geometry import NO_FEATURES, Features, Geometry
-from geom.description.materials import Material, filled, material
+from geom.description.materials import Material, filled, material, with_properties
 from geom.description.part import Part, Port
 from geom.errors import InputError
 
@@ -82,7 +82,8 @@ class Machine:
     def material_of(self, name: str) -> Material:
         """What the part is made of, [materials] overrides and the winding's fill and impregnation included."""
         part = self.part(name)
-        return material(part.material) if part.filling is None else filled(part.material, *part.filling)
+        usual = material(part.material) if part.filling is None else filled(part.material, *part.filling)
+        return with_properties(usual, part.properties)
 
     def conductivity(self, name: str) -> tuple[float, float]:
         """Conductivity of the part across and along the axis (W/m/K)."""

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import tomllib
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cache
 from pathlib import Path
 from typing import Any
@@ -59,6 +59,63 @@ class Material:
     def source(self) -> str:
         """Where that conductivity is from."""
         return self.sources["k_plane"]
+
+
+LIMITS = {  # from aerogel to diamond; of cp from heavy metals to wet stuffing
+    "k": (0.005, 2500.0),
+    "k_plane": (0.005, 2500.0),
+    "k_axial": (0.005, 2500.0),
+    "rho": (1.0, 25000.0),
+    "cp": (50.0, 6000.0),
+    "emissivity": (0.0, 1.0),
+}
+
+
+def in_limits(key: str, value: float) -> bool:
+    """Has a solid such a value of this property of Material?"""
+    low, high = LIMITS[key]
+    return low <= value <= high
+
+
+def read_entry(entry: Any, usual: str, where: str) -> tuple[str, tuple[tuple[str, float, str], ...]]:
+    """What [materials] says of a part: a name of the table, or {like = NAME, k = ..., source = "..."}.
+
+    usual : the name where the entry has no `like`.  k is both conductivities.
+    Returns the name, and (property, value, source) of what is not as in the table.
+    Raises InputError for an unknown name or property, for a value that no solid has, and for values of a winding, whose
+    properties follow from fill and impregnation.
+    """
+    if not isinstance(entry, Mapping):
+        return material(entry, where).name, ()
+    name = material(entry.get("like", usual), where).name
+    source = entry.get("source", "the machine file")
+    if not isinstance(source, str):
+        raise InputError(f"source = {str(source)[:40]} is not text", where, "words in quotes")
+    numbers = {key: value for key, value in entry.items() if key not in ("like", "source")}
+    for key, value in numbers.items():
+        if key not in LIMITS:
+            raise InputError(f"unknown key {key!r}", where, f"one of: like, {', '.join(LIMITS)}, source")
+        if isinstance(value, bool) or not isinstance(value, int | float) or not in_limits(key, value):
+            right = "a number from {:g} to {:g}".format(*LIMITS[key])
+            raise InputError(f"{key} = {str(value)[:40]} is not possible", where, right)
+    if numbers and material_table()[name].mixture is not None:
+        right = "fill and impregnation in [geometry], or like alone"
+        raise InputError(f"{next(iter(numbers))} of a winding", where, right)
+    return name, tuple((key, float(value), source) for key, value in _each(numbers).items())
+
+
+def entry_of(name: str, properties: tuple[tuple[str, float, str], ...]) -> str | dict[str, Any]:
+    """What `read_entry` reads as this material."""
+    if not properties:
+        return name
+    return {"like": name, **{key: value for key, value, _ in properties}, "source": properties[0][2]}
+
+
+def with_properties(usual: Material, properties: tuple[tuple[str, float, str], ...]) -> Material:
+    """The material with other values; their spreads stay as the table has them."""
+    values: dict[str, Any] = {key: value for key, value, _ in properties}
+    sources = {**usual.sources, **{key: source for key, _, source in properties}}
+    return replace(usual, **values, sources=sources) if values else usual
 
 
 @cache

@@ -10,6 +10,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
+from geom.description.materials import LIMITS, material
 from geom.description.outlines import INSET, Outline, radii
 from geom.description.profile import Loop, loop_area
 from geom.errors import InputError
@@ -91,6 +92,7 @@ def read_motor_cad(path: Path, family_template: str) -> Draft:
     k = file.number("Thermal_Conductivity_Slot_Liner", 1e-3, 500, 0.21)
     h = round(k / (METRES * liner), 2) if liner else None
     assumptions.contacts(draft, h, "Liner_Thickness, Thermal_Conductivity_Slot_Liner")
+    _materials(draft, file)
     _losses(draft, file, copper)
     assumptions.copper_sensor(draft)
     _left(draft, file)
@@ -348,6 +350,16 @@ def _cooling(draft: Draft, file: File) -> None:
     draft.assume("cooling", "one way through", jacket={"inlet": "jacket.inlet", "outlet": "jacket.outlet"})
 
 
+def _materials(draft: Draft, file: File) -> None:
+    """What parts are made of, by the file's own values; sheets are read in their plane."""
+    for part in sorted(assumptions.parts_of(draft) & _KEYS["materials"].keys()):
+        end, k = _KEYS["materials"][part]
+        keys = {k: f"Thermal_Conductivity_{end}", "rho": f"Density_{end}", "cp": f"Specific_Heat_{end}"}
+        values = {ours: file.number(key, *LIMITS[ours]) for ours, key in keys.items() if file.text(key).strip()}
+        if values:
+            draft.take("materials", ", ".join(keys.values()), **{part: values})
+
+
 def _losses(draft: Draft, file: File, copper: tuple[float, float, float]) -> None:
     """As the file has them at its reference speeds; where it has none but in the copper, the usual ones."""
     watts = {key: file.number(key, 0.0, 1e9, 0.0) for key in _KEYS["losses"]}
@@ -381,10 +393,10 @@ def _left(draft: Draft, file: File) -> None:
         text = file.text(key)
         if text and text != str(neutral) and not (isinstance(neutral, float) and _zero(text)):
             draft.leave(key, text, why)
-    for key, (ours, k) in _KEYS["conductivities"].items():
-        value = file.number(key, 0.0, 1e4, k)
-        if abs(value - k) > 0.01 * k:
-            draft.leave(key, value, f"{ours} of our table has {k:g} W/m/K; another material by [materials]")
+    ours = material("copper").k_plane
+    k = file.number("Thermal_Conductivity_Copper_-_Active", 0.0, 1e4, ours)
+    if abs(k / ours - 1) > 0.01:
+        draft.leave("Thermal_Conductivity_Copper_-_Active", k, f"copper in windings has {ours:g} W/m/K here")
     for key, (first, second) in file.contradictions.items():
         if key in file.reads:
             draft.leave(key, second, f"stands there twice: {first} is taken")

@@ -10,6 +10,7 @@ from functools import partial
 from pathlib import Path
 from typing import Any
 
+from geom.description.materials import in_limits
 from geom.description.names import checked_document
 from geom.description.outlines import NOTHING, Outline, radii
 from geom.description.profile import Loop, loop_area
@@ -40,6 +41,7 @@ SECTIONS = {
     ),
     "Wwire": lambda c: math.pi / 4 * c["Wwire"] ** 2 * c.get("Nwppc", 1),
 }
+PLACEHOLDER = 1  # what pyleecan writes for a property of a material that nobody gave
 CAGE_METALS = (("alum", "aluminium-cast"), ("copper", "copper"), ("cu", "copper"))
 LOST = {
     "skew": "the iron is straight here",
@@ -92,6 +94,8 @@ def read_pyleecan(path: Path, family_template: str) -> Draft:
     count, section = _stator(draft, pair[0])
     _rotor(draft, pair[1], pair[0])
     _shaft(draft, document, pair)
+    for part, key in (("stator.core", "stator"), ("rotor.core", "rotor"), ("shaft", "shaft")):
+        _material(draft, part, _part(_part(document, key), "mat_type"), f"{key}.mat_type")
     _frame(draft, document, pair[0], family_template)
     assumptions.contacts(draft)
     stator = pair[0]
@@ -406,7 +410,7 @@ def _rotor(draft: Draft, rotor: Lamination, stator: Lamination) -> None:
             draft.draw("notches", f"rotor.slot, {kind}", copies, [slot.path])
         if magnet is not None:
             draft.draw("magnets", f"rotor.slot, {kind}", copies, slot.filled)
-            _magnet_length(draft, magnet, rotor, "rotor.magnet")
+            _magnet(draft, magnet, rotor, "rotor.magnet")
             top = max([top, *radii((Outline(copies, slot.filled),))])
         elif node.get("__class__") == "LamSquirrelCage" or "ring_mat" in node:
             _cage(draft, rotor, slot, copies, kind)
@@ -437,7 +441,7 @@ def _hole(draft: Draft, rotor: Lamination, node: Node, key: str, k: int) -> Cut:
     turn = 2 * math.pi / copies if key == "hole_south" else 0.0
     around = copies if key == "hole" else max(copies // 2, 1)
     draft.draw("magnets", f"{name}, {kind}", around, [rotate(loop, turn) for loop in magnets])
-    _magnet_length(draft, _part(present, "magnet_0"), rotor, f"{name}.magnet_0")
+    _magnet(draft, _part(present, "magnet_0"), rotor, f"{name}.magnet_0")
     return Cut(f"{name}, {kind}", around, tuple(rotate(loop, turn) for loop in (*hole.magnets, *hole.air)))
 
 
@@ -452,7 +456,19 @@ def _surface_hole(node: Node, where: str) -> Hole:
     return Hole(tuple(magnets), tuple(air))
 
 
-def _magnet_length(draft: Draft, magnet: Node, rotor: Lamination, name: str) -> None:
+def _material(draft: Draft, part: str, material: Node, source: str, **like: str) -> None:
+    """What of a part's material the file knows; PLACEHOLDER stands where it does not."""
+    heat = _part(material, "HT")
+    values = {"k_plane": heat.get("lambda_x"), "k_axial": heat.get("lambda_z"), "cp": heat.get("Cp")}
+    values["rho"] = _part(material, "struct").get("rho")
+    fine = {k: v for k, v in values.items() if v != PLACEHOLDER and isinstance(v, int | float) and in_limits(k, v)}
+    if fine or like:
+        draft.take("materials", source, **{part: {**like, **fine} if fine else like["like"]})
+
+
+def _magnet(draft: Draft, magnet: Node, rotor: Lamination, name: str) -> None:
+    if draft.value("materials", "magnets") is None:
+        _material(draft, "magnets", _part(magnet, "mat_type"), f"{name}.mat_type")
     length = magnet.get("Lmag")
     if isinstance(length, int | float) and abs(length - rotor.length) > 0.005 * rotor.length:
         words = f"contradicts rotor.L1 = {rotor.length:g} m: magnets are as long as the rotor here"
@@ -478,7 +494,7 @@ def _cage(draft: Draft, rotor: Lamination, slot: Slot | PathSlot, copies: int, k
         draft.assume("geometry.rotor", "rings as high as the bars", ring_mm=in_mm(min(max(reach) - min(reach), most)))
     metal = str(_part(rotor.node, "ring_mat").get("name", "")).lower()
     name = next((name for word, name in CAGE_METALS if word in metal), "aluminium-cast")
-    draft.take("materials", f"rotor.ring_mat, {metal}", **{"rotor.cage": name})
+    _material(draft, "rotor.cage", _part(rotor.node, "ring_mat"), f"rotor.ring_mat, {metal}", like=name)
 
 
 def _coils(draft: Draft, rotor: Lamination, slot: Slot | PathSlot, copies: int, kind: str) -> None:

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from geom.description.machine import Machine, step_sidecar
+from geom.description.materials import entry_of
 from geom.description.names import file_stem
 from geom.description.palette import colour
 from geom.description.part import CadShape, Helix, Part, Prism, Rod
@@ -130,7 +131,7 @@ def _materials(machine: Machine) -> str:
     roles = {part.name: _role(part.identity) for part in machine.parts if part.identity is not None}
     document = {
         "machine": {"name": machine.name, "description": machine.description},
-        "materials": {part.name: part.material for part in machine.parts},
+        "materials": {part.name: entry_of(part.material, part.properties) for part in machine.parts},
     }
     return tomlkit.dumps(document | ({"roles": roles} if roles else {}))
 

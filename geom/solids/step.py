@@ -28,9 +28,9 @@ from pathlib import Path
 from typing import Any
 
 from geom.description.machine import SECTIONS, Machine, check_ratings, step_sidecar
-from geom.description.materials import material
+from geom.description.materials import read_entry
 from geom.description.names import checked_name
-from geom.description.part import Part
+from geom.description.part import Part, Properties
 from geom.description.roles import Identity, Role
 from geom.description.toml_file import read_toml
 from geom.errors import InputError
@@ -59,10 +59,11 @@ def machine_in_step(path: Path, usual_materials: Callable[[], Mapping[str, str]]
     what = _declared_roles(sidecar.get("roles", {}), prisms, f"{beside} [roles]")
     materials = sidecar.get("materials", {})
     parts = tuple(
-        Part(name, _material(name, materials, beside, usual_materials), prisms[name], role=is_.role, turns=is_.turns)
+        Part(name, kind, prisms[name], role=is_.role, turns=is_.turns, properties=properties)
         for name in prisms
         if name not in fluids
         for is_ in [what.get(name, NOTHING)]
+        for kind, properties in [_material(name, materials, beside, usual_materials)]
     )
     spaces = tuple(
         Part(name, kind, prisms[name], solid=False, role=what.get(name, NOTHING).role or _space(kind))
@@ -130,14 +131,13 @@ def _refuse_unused(patterns: Mapping[str, Any], prisms: Mapping[str, Any], where
 
 
 def _material(
-    name: str, materials: Mapping[str, str], beside: Path, usual_materials: Callable[[], Mapping[str, str]]
-) -> str:
+    name: str, materials: Mapping[str, Any], beside: Path, usual_materials: Callable[[], Mapping[str, str]]
+) -> tuple[str, Properties]:
     """Material of a solid: the table's entry of that name, its first pattern that fits, or the library's habit."""
     fitting = (m for pattern, m in materials.items() if fnmatchcase(name, pattern))
-    word = materials[name] if name in materials else next(fitting, None)
-    if word is not None:
-        return material(word).name
-    if name not in usual_materials():
+    word = materials[name] if name in materials else next(fitting, {})
+    usual = "" if not isinstance(word, Mapping) or word.get("like") else usual_materials().get(name)
+    if usual is None:
         right = f'write [materials] "{name}" = "steel"'
         raise InputError(f"no material for the solid {name!r}", str(beside), right)
-    return usual_materials()[name]
+    return read_entry(word, usual, f"{beside} [materials] {name}")

@@ -84,3 +84,50 @@ def test_air_between_wires_lowers_the_conductivity_down_to_that_of_air(impregnat
 def test_a_winding_of_solid_copper_has_no_fill():
     table = {"machine": {"family": "pmsm"}, "materials": {"winding": "copper"}}
     assert machine_from(table).material_of("winding") == material("copper")
+
+
+OWN = {"like": "steel", "k": 43.0, "rho": 7800, "source": "data sheet"}
+WRONG = {
+    "a word for a number": ({"k": "much"}, ["k = much", "0.005 to 2500"]),
+    "what no solid has": ({"rho": 1e6}, ["rho = 1000000", "1 to 25000"]),
+    "not a number": ({"cp": float("nan")}, ["cp = nan", "50 to 6000"]),
+    "yes for a number": ({"emissivity": True}, ["emissivity = True", "0 to 1"]),
+    "a key nobody knows": ({"lambda": 1.0}, ["lambda", "k_plane"]),
+    "a material nobody knows": ({"like": "cheese"}, ["cheese", "steel"]),
+    "a source that is not text": ({"k": 1.0, "source": 3}, ["source = 3", "quotes"]),
+    "a list": (["steel"], ["['steel']", "steel"]),
+}
+
+
+def with_housing(entry, part="housing"):
+    return machine_from({"machine": {"family": "tefc"}, "materials": {part: entry}}, "own.toml")
+
+
+def test_own_values_stand_in_place_of_those_of_the_table():
+    found, usual = with_housing(OWN).material_of("housing"), material("steel")
+    assert (found.k_plane, found.k_axial, found.rho) == (43.0, 43.0, 7800.0)
+    assert (found.cp, found.emissivity, found.spreads) == (usual.cp, usual.emissivity, usual.spreads)
+    assert found.sources == usual.sources | dict.fromkeys(("k_plane", "k_axial", "rho"), "data sheet")
+
+
+def test_without_like_the_rest_is_the_usual_of_the_part():
+    machine, usual = with_housing({"k_axial": 99.0}), machine_from({"machine": {"family": "tefc"}})
+    assert machine.part("housing").material == usual.part("housing").material
+    assert machine.material_of("housing").k_axial == 99.0
+    assert machine.material_of("housing").k_plane == usual.material_of("housing").k_plane
+
+
+@pytest.mark.parametrize("case", WRONG)
+def test_wrong_own_values_are_one_message(case):
+    entry, words = WRONG[case]
+    with pytest.raises(InputError) as caught:
+        with_housing(entry)
+    for word in ("own.toml [materials] housing", *words):
+        assert word in str(caught.value)
+
+
+def test_values_of_a_winding_are_refused():
+    """They follow from fill and impregnation; another material by name is fine."""
+    with pytest.raises(InputError, match="fill and impregnation"):
+        with_housing({"k": 2.0}, "winding")
+    assert with_housing({"like": "copper", "k": 390.0}, "winding").material_of("winding").k_axial == 390.0

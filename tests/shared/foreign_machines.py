@@ -134,6 +134,11 @@ Ref_Speed_-_Magnet_Iron_Loss=2000
 Speed_Coeff_-_Magnet_Iron_Loss=2
 [Mat_Conductivity]
 Thermal_Conductivity_Slot_Liner=0.2
+Thermal_Conductivity_Housing_[A]=168
+Thermal_Conductivity_Stator_Lam_[Back_Iron]=30
+Thermal_Conductivity_Copper_-_Active=401
+[Mat_Cp]
+Specific_Heat_Housing_[A]=833
 [Miscellaneous]
 Shaft_Speed=1500
 [Temperature Validation]

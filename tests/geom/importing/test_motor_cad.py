@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 from foreign_machines import V_SHAPE, motor_cad, saved
 
-from geom import COARSE, InputError, build_mesh, import_draft, load_machine
+from geom import COARSE, InputError, build_mesh, import_draft, load_machine, material
 from geom.machine_file import machine_from
 
 E8 = Path(__file__).parents[4] / "shared/data/motor-cad/e8_ipmsm_jacket.mot"
@@ -44,6 +44,16 @@ def test_cooling_gaps_and_losses_are_those_of_the_file(tmp_path):
     machine_from(sections, "small")
 
 
+def test_parts_are_of_the_materials_of_the_file(tmp_path):
+    """Sheets conduct as the file says in their plane alone; what the file does not say stays as usual."""
+    machine, usual = load_machine(saved(tmp_path, motor_cad(), "small.mot")), material("electrical-steel")
+    housing, core = machine.material_of("housing"), machine.material_of("stator.core")
+    assert (housing.k_plane, housing.k_axial, housing.cp) == (168.0, 168.0, 833.0)
+    assert housing.rho == material("aluminium-cast").rho
+    assert (core.k_plane, core.k_axial, core.rho) == (30.0, usual.k_axial, usual.rho)
+    assert machine.material_of("rotor.core") == usual
+
+
 def test_a_v_of_buried_magnets(tmp_path):
     machine = load_machine(saved(tmp_path, motor_cad(V_SHAPE, BPM_Rotor="Interior_VShape"), "small.mot"))
     assert machine.part("magnets").volume == pytest.approx(8 * 0.003 * 0.014 * 0.04, rel=1e-6)
@@ -79,6 +89,7 @@ def test_what_contradicts_or_goes_nowhere_is_said(tmp_path):
     assert "contradicts Stator_Lam_Length" in left["Rotor_Lam_Length"]
     assert "60 is taken" in left["Stator_Bore"]
     assert {"Sleeve_Thickness", "Spray_Cooling", "[Losses_At_RPM_Ref]"} <= set(left)
+    assert "385 W/m/K" in left["Thermal_Conductivity_Copper_-_Active"]
 
 
 REPEATED = {"Slot_Number": 18, "Magnet_Thickness": 5, "ConductorsPerSlot": 30, "Liner_Thickness": 1}

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 from foreign_machines import put, pyleecan, saved
 
-from geom import COARSE, InputError, build_mesh, check_cad, import_draft, load_machine
+from geom import COARSE, InputError, build_mesh, check_cad, import_draft, load_machine, material
 from geom.description.profile import loop_area
 from geom.importing.holes import HOLES
 from geom.importing.plane import Place, unite
@@ -247,14 +247,17 @@ def test_what_contradicts_is_said(tmp_path):
 def test_a_cage_and_a_wound_rotor(tmp_path):
     slot = {"__class__": "SlotW26", "Zs": 16, "H0": 0.0005, "H1": 0.004, "R1": 0.0015, "R2": 0.001, "W0": 0.001}
     cage = {"slot": slot, "winding": {"conductor": {"__class__": "CondType22", "Sbar": 1.53e-5}}, "hole": []}
-    cage |= {"__class__": "LamSquirrelCage", "Hscr": 0.006, "Lscr": 0.005, "ring_mat": {"name": "Copper1"}}
+    metal = {"name": "Copper1", "HT": {"lambda_x": 370.0, "lambda_z": 1, "Cp": 1}, "struct": {"rho": 8900.0}}
+    cage |= {"__class__": "LamSquirrelCage", "Hscr": 0.006, "Lscr": 0.005, "ring_mat": metal}
     machine = pyleecan()
     machine["rotor"] |= cage
     built = load_machine(saved(tmp_path, machine))
     bar = trapeze(0.004, 0.003, 0.002) + ROUND * (0.0015**2 + 0.001**2)
     ring = math.pi * (0.029**2 - 0.023**2) * 0.005
     assert built.part("rotor.cage").volume == pytest.approx(16 * bar * 0.04 + 2 * ring, rel=0.01)
-    assert built.part("rotor.cage").material == "copper"
+    found, usual = built.material_of("rotor.cage"), material("copper")
+    assert (found.k_plane, found.rho) == (370.0, 8900.0)
+    assert (found.name, found.k_axial, found.cp) == ("copper", usual.k_axial, usual.cp)  # 1 is what nobody gave
     poles = {"__class__": "SlotW61", "Zs": 4, **mm("H0=3 H1=1 H2=8 H3=0.5 H4=0.5 W0=12 W1=24 W2=16 W3=0")}
     wound = {"slot": poles, "winding": {**machine["stator"]["winding"], "Ntcoil": 8}, "hole": []}
     machine["rotor"] = {**pyleecan()["rotor"], **wound, "__class__": "LamSlotWind"}

@@ -121,11 +121,13 @@ def test_file_beside_gives_materials_fluids_axis_and_sections(tmp_path):
     path = write(tmp_path / "turned.step", **turned)
     (tmp_path / "turned.step.toml").write_text(
         '[machine]\nname = "mine"\n[import]\naxis = "x"\nleave_out = ["bolt*"]\n'
-        '[materials]\nrod = "steel"\n"winding*" = "copper"\n[fluids]\noil = "glycol-50"\n[ratings]\ncurrent_A = 3.0\n'
+        '[materials]\nrod = { like = "steel", k = 43.0 }\n"winding*" = "copper"\n'
+        '[fluids]\noil = "glycol-50"\n[ratings]\ncurrent_A = 3.0\n'
     )
     machine = import_step(path)
     assert machine.name == "mine"
     assert {part.name: part.material for part in machine.parts} == {"rod": "steel", "winding.a": "copper"}
+    assert machine.material_of("rod").k_plane == 43.0
     assert machine.part("rod").span == (0.0, pytest.approx(0.1))
     assert machine.part("oil").material == "glycol-50"
     assert machine.sections["ratings"] == {"current_A": 3.0}
@@ -135,6 +137,7 @@ def test_file_beside_gives_materials_fluids_axis_and_sections(tmp_path):
 WRONG = {
     "a solid without material": ("", ["rod", "[materials]"]),
     "a material nobody knows": ('[materials]\nrod = "cheese"', ["cheese", "steel"]),
+    "values like those of nobody": ("[materials]\nrod = { k = 1.0 }", ["rod", "[materials]"]),
     "a solid that is not there": ('[materials]\nrod = "steel"\nrood = "steel"', ["rood", "rod"]),
     "a pattern that fits nothing": ('[import]\nleave_out = ["screw*"]', ["screw*", "rod"]),
     "an axis nobody knows": ('[import]\naxis = "w"', ["'w'", "x, y, z"]),
