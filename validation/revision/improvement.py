@@ -194,7 +194,7 @@ def ended(case: Case, stairs: Sequence[Step], diagnosis: Diagnosis, why: str) ->
         return Improvement(case, tuple(stairs), diagnosis, why + rise_words(stairs))
     kind, K = min(finite.items(), key=lambda x: x[1])
     beside = f"each test predicted from the others {ours:.2f} K, by {NAMES[kind]} {K:.2f} K"
-    why = f"{beside}; what stops it: {why}" if ours > WORTH * K else f"{why}; {beside}"
+    why = f"{beside}; {why}" if ours > WORTH * K else f"{why}; {beside}"
     return Improvement(case, tuple(stairs), diagnosis, why + rise_words(stairs), K)
 
 
@@ -226,8 +226,7 @@ def _added(
             break
         name = supervisor.choose(diagnosis, choice)
         if name is None:
-            were = "were" if len(choice) > 1 else "was"
-            declined = declined or f"{' or '.join(c.words for c in choice)} {were} not added"
+            declined = declined or f"not added: {' or '.join(c.words for c in choice)}"
             if not supervisor.suggest:
                 break
             continue
