@@ -23,6 +23,7 @@ from thermoscope.case_folder.runs import (
 )
 from viz import Comparison, cutaway, sensors, split
 from viz.colours import LIGHT
+from viz.data import LATE
 from viz.rendering import scene
 
 
@@ -35,9 +36,9 @@ def draw(case: Path, png: Path) -> str:
     wrong = sensors(Comparison(test, now.before, now.limits), folder.positions)  # type: ignore[arg-type]
     nodes = split(folder.built.mesh)  # type: ignore[union-attr]
     before, after = last.rmse_K[test.name]
-    title = f"{instant_words(test, test.time[-1])}: measured minus modelled"
+    title = f"{instant_words(test, test.time[-1])}: temperature of the model"
     ends = temperature_range(folder, nodes)
-    p = cutaway(nodes, fields(earlier, test, nodes, 1)[1][-1], sensors=wrong, title=title, limits=ends)
+    p = cutaway(nodes, fields(earlier, test, nodes, 1)[1][-1], sensors=wrong, title=title, limits=ends, note=LATE)
     words = fill(f"found missing: {step_words(folder.case, last)}", 33)
     words += f"\nadded: {before:.2f} K → {after:.2f} K rms"
     line = p.add_text(words, position=(0.66, 0.02), viewport=True, font_size=11, color=LIGHT.ink)

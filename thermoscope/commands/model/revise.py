@@ -161,7 +161,7 @@ def evidence(folder: Folder, result: revise.Revision) -> dict[str, float | str]:
 
 
 def telling(p: Mapping[str, Any]) -> tuple[bool, bool, float]:
-    """Sorts the effects' own sizes first, then their exponents, then what lies farthest from the middle of its prior."""
+    """Sorts the effects' own sizes first, then their exponents, then what lies farthest from its prior."""
     low, high = p["prior"][1:]
     return "@" not in p["name"], "^" in p["name"], -abs(p["value"] - p["prior"][0]) / max(high - low, 1e-300)
 
