@@ -21,7 +21,7 @@ WIDEST = 2.5  # of what was expected: an interval that is wider runs off the pic
 
 @paper.styled
 def intervals(parameters: Sequence[Mapping[str, Any]], *, png: str | Path | None = None) -> Figure:
-    """Each value with its 95 % interval on the scale of what was expected (grey), sizes of effects first, then what moved most.
+    """Each value with its 95 % interval on the scale of what was expected (grey): effects first, then what moved most.
 
     Blue is what the data fix; pale what they leave as it was; vermilion what left the expected.
     parameters : name, value, unit, ci95, prior [value, low, high] and identified, as `calibrate` lists them, and words
