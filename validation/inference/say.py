@@ -435,7 +435,7 @@ def sentence(
     if verdict == "absorbed" and not choice.groups:
         return f"calibration of {value_words(pulls[0][0])} is {abs(pulls[0][2]):.1f} deviations from its prior: {hides}"
     if verdict == "absorbed":
-        return f"{rows[0].words} would do what calibration of {value_words(rows[0].twin)} has done: {hides}"
+        return f"{rows[0].words} would do what calibration of {value_words(rows[0].twin or '')} has done: {hides}"
     if verdict == "outside" and (contradictions := [c.words for c in choice.checks if c.contradicts]):
         return "; ".join(contradictions)
     if verdict == "outside":

@@ -327,7 +327,7 @@ def strain_words(case: Case) -> str:
         for i, (name, value, unit, z) in enumerate(rows[:NAMES])
     ]
     more = f" and {len(rows) - NAMES} more" if len(rows) > NAMES else ""
-    return f"To fit, these had to move: {', '.join(each)}{more}." if each else ""
+    return f"The fit moved {', '.join(each)}{more}." if each else ""
 
 
 def _value_words(name: str, value: float, unit: str) -> str:
