@@ -120,7 +120,7 @@ def test_a_calibration_that_only_its_own_test_gains_by_is_kept_for_that():
     case = Case("one", Model(one_node(FILM)), (odd, measured("usual", "validate")))
     done = calibrate(case)
     assert (done.accepted, done.worth_keeping) == (False, True)
-    assert re.match(r"kept for the fitted tests only: [0-9.]+ -> [0-9.]+ K \(usual\); ", done.why)
+    assert re.match(r"kept for the fitted tests only: [0-9.e-]+ -> [0-9.]+ K \(usual\); ", done.why)
 
 
 def test_a_calibration_that_predicts_worse_than_no_change_is_said_so():
