@@ -30,6 +30,7 @@ from thermoscope.console.progress_bar import one_bar
 from thermoscope.console.summary import Summary, limited_lines
 from thermoscope.console.terminal import give, notes, notes_once, progress, say
 from thermoscope.files import checked_out
+from validation.parameters.unknowns import value_words
 
 if TYPE_CHECKING:
     from thermoscope.case_folder.folder import Folder
@@ -79,11 +80,11 @@ def demo(
     picture(odds(diagnosis, out), "what the readings say")
     success, effects = False, diagnosis["named"]
     if effects:
-        headline(f"6  Add {effects[0]}")
+        headline(f"6  Add {value_words(effects[0])}")
         with limited_lines(SHORT):
             success = add(str(case), effects[:1], False, str(out / "add.json")) == 0
         folder = open_demo(case)
-        stages.append(Stage(f"with {effects[0]}", folder.compared.document()))
+        stages.append(Stage(f"with {value_words(effects[0])}", folder.compared.document()))
     headline("7  What is left, and where to look")
     say(remaining_error(diagnosis, stages[-1].errors))
     with progress() as tell:
@@ -116,7 +117,7 @@ def next_likely(diagnosis: Mapping[str, Any]) -> str:
     for row in diagnosis["odds"]:
         more = [e for e in row["effects"] if e not in diagnosis["named"]]
         if len(row["effects"]) == len(diagnosis["named"]) + 1 and more[0] in tests and not row.get("tests"):
-            return f"; likeliest {more[0]} ({percent(row['probability'])}): {tests[more[0]]}"
+            return f"; likeliest {value_words(more[0])} ({percent(row['probability'])}): {tests[more[0]]}"
     return ""
 
 

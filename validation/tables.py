@@ -241,12 +241,13 @@ def next_tests(diagnosis: Document) -> list[Table | str]:
 
 
 def revision_tables(document: Document) -> tuple[Table, ...]:
-    """The error of every test before and after, and the parameters."""
+    """The error of every test before and after, those that were not fitted first, and the parameters."""
+    tests = sorted(document["tests"], key=lambda t: (t["role"] != "hold-out", t["role"] == "calibrate"))
     columns = (
         "test=name | role | *error before (K)=rmse_K.before | *after (K)=rmse_K.after | "
         "*sensors as fitted (K)=fitted_rmse_K.after"
     )
-    return Table.of("", document["tests"], columns, ["hold-out"]), parameters_table("Values", document["parameters"])
+    return Table.of("", tests, columns, ["hold-out"]), parameters_table("Values", document["parameters"])
 
 
 def parameters_table(title: str, parameters: Iterable[Document]) -> Table:

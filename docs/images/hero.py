@@ -12,15 +12,7 @@ from PIL import Image
 from PIL.PngImagePlugin import PngInfo
 
 from thermoscope.case_folder.folder import load_case
-from thermoscope.case_folder.runs import (
-    before_last,
-    by_interest,
-    comparison_of,
-    fields,
-    instant_words,
-    step_words,
-    temperature_range,
-)
+from thermoscope.case_folder.runs import before_last, by_interest, comparison_of, fields, step_words, temperature_range
 from viz import Comparison, cutaway, sensors, split
 from viz.colours import LIGHT
 from viz.rendering import scene
@@ -35,7 +27,7 @@ def draw(case: Path, png: Path) -> str:
     wrong = sensors(Comparison(test, now.before, now.limits), folder.positions)  # type: ignore[arg-type]
     nodes = split(folder.built.mesh)  # type: ignore[union-attr]
     before, after = last.rmse_K[test.name]
-    title = f"{instant_words(test, test.time[-1])}: measured minus modelled"
+    title = f"{test.name}: measured minus modelled, mean of the last fifth"
     ends = temperature_range(folder, nodes)
     p = cutaway(nodes, fields(earlier, test, nodes, 1)[1][-1], sensors=wrong, title=title, limits=ends)
     words = fill(f"found missing: {step_words(folder.case, last)}", 33)

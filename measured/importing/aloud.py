@@ -128,7 +128,7 @@ def _winding(columns: Columns, left: Columns) -> dict[str, str]:
     elif ohms:
         words = f"'{ohms[0]}' is a resistance; say whose and when cold: docs/how-to/thermal-test.md"
     elif any(not roles for roles, _ in hot):
-        return {"winding": "no column is of a winding by its name"}
+        return {"winding": "no column's name says winding"}
     else:
         return {"winding": "no winding is measured"}
     return {"winding": f"the winding was not placed: {words}"}

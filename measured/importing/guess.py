@@ -566,7 +566,7 @@ def _unit(source: Source, column: str, quantity: str, unit: str) -> tuple[str, s
         kelvin = KELVIN[0] < float(np.nanmedian(values)) < KELVIN[1] and float(np.nanmin(values)) > KELVIN[0]
         first = float(values[np.isfinite(values)][0])
         if kelvin and not unit and first > ROOM_K[0]:  # below it are tenths of a room's degrees, rather
-            return "K", "no unit: by its values"
+            return "K", "no unit: guessed"
         if unit == "degC" and kelvin and ROOM_K[0] < first < ROOM_K[1]:
             return "K", f"{source.units[column]} {IN_HEADER} but K by its values"
         unit = unit or "degC"
@@ -579,7 +579,7 @@ def _unit(source: Source, column: str, quantity: str, unit: str) -> tuple[str, s
         small = most <= 1.0
         if most > PERCENT:
             return "%", f"goes to {most:g}, so in no percent: only its changes count"
-        return ("1" if small else "%"), "no unit: by its values"
+        return ("1" if small else "%"), "no unit: guessed"
     words = {*tokens(source.labels[column])}
     robot = "velocity" in words and any("effort" in tokens(label) for label in source.labels.values())  # of ROS
     first_unit = "rad/s" if "omega" in words or robot else next(iter(QUANTITIES[quantity].units))

@@ -221,7 +221,7 @@ def _unused(patients: list[Patient], network: Network) -> Iterator[Finding]:
                 "",
                 name,
                 "no law of the network reads this input yet",
-                "leave it, an effect may use it; or input = the name that a law reads",
+                "leave it, an effect may; or input = the name of one that a law reads",
                 True,
             )
     for name in sorted(n for n in read & set(column_of) if column_of[n]):

@@ -265,10 +265,10 @@ def finding_words(folder: Folder, errors: Mapping[str, Any]) -> str:
 
 
 def parameters(folder: Folder) -> list[dict[str, Any]]:
-    """The values of the last revision with their intervals, as `calibrate` lists them."""
+    """The values of the last revision with their intervals, as `calibrate` lists them, those of effects first."""
     last = folder.history.last
     out = []
-    for p in working(folder.case)[1].parameters:
+    for p in sorted(working(folder.case)[1].parameters, key=lambda p: "@" not in p.name):
         if p.name not in last.intervals:
             continue
         low, high = (max(p.low, min(p.high, to_value(p, s * NORMAL_95 * p.prior_sd))) for s in (-1.0, 1.0))

@@ -19,7 +19,7 @@ from measured.sensors.operators import start_target
 from validation.comparison.linearisation import largest_rise
 from validation.comparison.predict import predict
 from validation.comparison.uncertainty import Uncertainty, uncertainties
-from validation.parameters.unknowns import hidden_starts, measured, standing, start_name
+from validation.parameters.unknowns import hidden_starts, measured, standing, start_name, value_words
 from validation.tables import comparison_tables
 from validation.threads import run_by_run
 
@@ -120,7 +120,7 @@ class Comparison(TableResult):
         """How many sensors are over, and by how much the model is off, in a sentence."""
         verdicts = [c.verdict for t in self.tests for c in t.channels]
         over, every = verdicts.count("over"), len(verdicts)
-        effects = f" with {', '.join(self.effects)}" if self.effects else ""
+        effects = f" with {', '.join(map(value_words, self.effects))}" if self.effects else ""
         records = f"{over} of {every} sensor records are over" if over else f"all {every} sensor records are within"
         if "unknown" in verdicts:
             records = f"{every} sensor records, held against no limit"

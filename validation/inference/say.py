@@ -44,6 +44,7 @@ from validation.inference.result import (
     Remainder,
     Verdict,
 )
+from validation.parameters.unknowns import value_words
 
 Record = tuple[str, str]  # test and channel
 Pulls = Sequence[tuple[str, float, float]]
@@ -432,9 +433,9 @@ def sentence(
             words = f"nothing with a{sure} name is missing ({none}); {where}"
         return "; ".join([*filter(None, [r.forgiven for r in left[:1]]), words])
     if verdict == "absorbed" and not choice.groups:
-        return f"calibration of {pulls[0][0]} is {abs(pulls[0][2]):.1f} deviations from its prior: {hides}"
+        return f"calibration of {value_words(pulls[0][0])} is {abs(pulls[0][2]):.1f} deviations from its prior: {hides}"
     if verdict == "absorbed":
-        return f"{rows[0].effect} would do what calibration of {rows[0].twin} has done: {hides}"
+        return f"{rows[0].words} would do what calibration of {value_words(rows[0].twin or '')} has done: {hides}"
     if verdict == "outside" and (contradictions := [c.words for c in choice.checks if c.contradicts]):
         return "; ".join(contradictions)
     if verdict == "outside":

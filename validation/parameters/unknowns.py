@@ -327,14 +327,14 @@ def strain_words(case: Case) -> str:
         for i, (name, value, unit, z) in enumerate(rows[:NAMES])
     ]
     more = f" and {len(rows) - NAMES} more" if len(rows) > NAMES else ""
-    return f"To fit, {', '.join(each)}{more}." if each else ""
+    return f"The fit moved {', '.join(each)}{more}." if each else ""
 
 
 def _value_words(name: str, value: float, unit: str) -> str:
-    """What became of a parameter; of an exponent how it changed."""
+    """How far a parameter moved."""
     law, power = parameter_words(name)
-    shift = f"the {law} had to be moved by {value:.3g} {unit.removesuffix('1')}".strip()
-    return f"the {power} in the {law} had to change by {value:+.2g}" if power else shift
+    shift = f"the {law} by {value:+.3g} {unit.removesuffix('1')}".strip()
+    return f"the {power} in the {law} by {value:+.2g}" if power else shift
 
 
 def parameter_words(name: str) -> tuple[str, str]:

@@ -224,11 +224,11 @@ def prediction_checks(
     was, now = rms(before), rms(after)
     gain = -GAIN if aside else GAIN
     short = f" where {GAIN:.3g} would do" if 0.0 < sum(nats) <= gain else ""
-    better = f"better in {sum(x > 0 for x in nats)} of {len(nats)}, log odds {sum(nats):+.3g} in all{short}"
+    better = f"better in {sum(x > 0 for x in nats)} of {len(nats)}, log odds {sum(nats):+.3g}{short}"
     part = len(telling) == 1
     only = f"; seen in {telling[0]} only, judged on its later part: not yet tested elsewhere" if part else ""
     parts = f"; of {', '.join(lone)} the later part, since only it tells what held in it" if lone and not part else ""
-    words = f"each part left out and predicted from the others: {fall(was, now)}, {better}{only}{parts}"
+    words = f"{fall(was, now)} (each part predicted from the others), {better}{only}{parts}"
     none = float(np.sqrt(sum(f.no_change_K2s for f in after) / sum(f.seconds for f in after)))
     return (
         Check("left out", sum(nats) > gain and now <= same * was, sum(nats), gain, words, part),
@@ -249,7 +249,7 @@ def bound_check(fit: Fit, name: str) -> Check:
     """
     k = fit.unknowns.names.index(name)
     p, value = fit.unknowns.parameters[k], to_value(fit.unknowns.parameters[k], float(fit.theta[k]))
-    inside = f"{name} {value:.3g} lies between {p.low:.3g} and {p.high:.3g} {p.unit}"
+    inside = f"{name} {value:.3g} lies between {p.low:.5g} and {p.high:.5g} {p.unit}"
     if fit.at_bound[k] and value == p.neutral:
         return Check("bounds", False, value, p.high, f"{name} is fitted to {value:.3g} {p.unit}: it is not there")
     if fit.at_bound[k] and p.targets[0][0].startswith("boundary:"):

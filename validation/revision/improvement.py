@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from itertools import pairwise
 from textwrap import shorten
@@ -83,7 +83,7 @@ class Refusal:
 
     @classmethod
     def of(cls, names: Sequence[str], step: Revision) -> Refusal:
-        return cls(tuple(names), " and ".join(effect(name).statement for name in names), step.why)
+        return cls(tuple(names), _statements(names), step.why)
 
     def __str__(self) -> str:
         return f"not accepted: {self.what}, as {self.why}"
@@ -194,7 +194,7 @@ def ended(case: Case, stairs: Sequence[Step], diagnosis: Diagnosis, why: str) ->
         return Improvement(case, tuple(stairs), diagnosis, why + rise_words(stairs))
     kind, K = min(finite.items(), key=lambda x: x[1])
     beside = f"each test predicted from the others {ours:.2f} K, by {NAMES[kind]} {K:.2f} K"
-    why = f"{beside}; what stops it: {why}" if ours > WORTH * K else f"{why}; {beside}"
+    why = f"{beside}; {why}" if ours > WORTH * K else f"{why}; {beside}"
     return Improvement(case, tuple(stairs), diagnosis, why + rise_words(stairs), K)
 
 
@@ -202,8 +202,14 @@ def rise_words(stairs: Sequence[Step]) -> str:
     """The steps with which the error of the held-out tests rose; "" where there is none."""
     unseen = [[c for t in s.comparison.tests if t.role == "hold-out" for c in t.channels] for s in stairs]
     each = zip(pairwise(map(pooled, unseen)), stairs[1:], strict=True) if all(unseen) else ()
-    rows = [f"{s.effect or s.step} {was:.2f} -> {now:.2f} K" for (was, now), s in each if now > was + LEAST]
-    return f"; held-out tests got worse with {', '.join(rows)}" if rows else ""
+    rows = [(s.effect, s.step, was, now) for (was, now), s in each if now > was + LEAST]
+    texts = [f"{_statements(e.split(TOGETHER)) if e else step}: {was:.2f} -> {now:.2f} K" for e, step, was, now in rows]
+    return f"; held-out tests got worse with {', '.join(texts)}" if rows else ""
+
+
+def _statements(names: Iterable[str]) -> str:
+    """Effects as an engineer says them."""
+    return " and ".join(effect(name).statement for name in names)
 
 
 def _added(
@@ -226,8 +232,7 @@ def _added(
             break
         name = supervisor.choose(diagnosis, choice)
         if name is None:
-            were = "were" if len(choice) > 1 else "was"
-            declined = declined or f"{' or '.join(c.words for c in choice)} {were} not added"
+            declined = declined or f"not added: {' or '.join(c.words for c in choice)}"
             if not supervisor.suggest:
                 break
             continue

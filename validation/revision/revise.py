@@ -318,7 +318,7 @@ def _lost(changes: Sequence[Change], tests: Sequence[Test]) -> Check:
     fitted = {c.name: (c.fitted_before or c.before, c.fitted_after or c.after) for c in mine}
     both = _far_worse(read, sigma) & _far_worse(fitted, sigma)
     text = ", ".join(f"{c.name} {fall(c.before, c.after)}" for c in mine if c.name in both)
-    words = f"another test pays for it: {text}; more differs between these tests" if both else "no test pays for it"
+    words = f"{text}; something else differs between these tests" if both else "none gets far worse"
     return Check("other tests", not both, float(len(both)), 0.0, words)
 
 
@@ -359,10 +359,10 @@ def _fit_checks(case: Case, fit: Fit, new: Model, changes: Sequence[Change]) -> 
     pairs = {"left out": np.sqrt(square / seconds)} if seconds else {}
     pairs |= {k: np.array([mean_square(some, "before"), mean_square(some, "after")]) for k, some in groups.items()}
     sigma = float(np.sqrt(np.mean([c.sigma_K**2 for t in fitted for c in t.channels])))
-    which = {"left out": "each of its tests predicted from the rest", FITTED: "the tests it was fitted to"}
+    which = {"left out": "each of its tests predicted from the others", FITTED: "the tests it was fitted to"}
     which["unseen"] = ", ".join(c.name for c in unseen)
     checks = [
-        Check(kind, bool(b <= max(GETS_WORSE * a, sigma)), float(b), float(a), f"{which[kind]}: {fall(a, b)}")
+        Check(kind, bool(b <= max(GETS_WORSE * a, sigma)), float(b), float(a), f"{fall(a, b)} ({which[kind]})")
         for kind, (a, b) in pairs.items()
     ]
     sums = {which["left out"]: [(now.square_K2s, now.no_change_K2s, now.seconds) for now in blind]}
@@ -383,7 +383,7 @@ def _no_change(sums: Mapping[str, Sequence[tuple[float, float, float]]], sigma: 
     """
     each = {what: np.sqrt(np.sum(rows, axis=0)[:2] / sum(span for *_, span in rows)) for what, rows in sums.items()}
     what, (error, none) = max(each.items(), key=lambda x: x[1][0] / max(x[1][1], sigma))
-    words = f"{what}: {error:.2f} K where a guess of no change leaves {none:.2f} K"
+    words = f"{error:.2f} K where a guess of no change leaves {none:.2f} K ({what})"
     return Check("no change", bool(error <= max(none, sigma)), float(error), float(none), words)
 
 
@@ -485,7 +485,7 @@ def other_changes(changes: Sequence[Change], fitted: Collection[str]) -> list[st
     was, now = (mean_square(outside, side, [c.seconds for c in outside]) for side in ("before", "after"))
     change = f"{called} {fall(was, now)}"
     worst = max(outside, key=lambda c: c.after - c.before)
-    why = f": {worst.name} got worse, the fit follows what only the fitted tests show" if now > was else ""
+    why = f": {worst.name} got worse" if now > was else ""
     return [f"{change}{why}"]
 
 

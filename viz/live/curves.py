@@ -47,7 +47,7 @@ def sensor(comparison: Comparison, channel: str, *, theme: Theme = LIGHT) -> go.
         for curve in curves:
             _line(out, x, replace(curve, y=curve.y[thin]), row, theme)
     out.update_yaxes(title="°C", row=1, col=1)
-    out.update_yaxes(title="residual (K)", row=2, col=1)
+    out.update_yaxes(title="residual (K)", nticks=4, row=2, col=1)
     out.update_xaxes(title=f"time ({unit})", row=2, col=1)
     return out
 

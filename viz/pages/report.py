@@ -82,7 +82,8 @@ def render(report: Report) -> str:
 def _top(r: Report) -> str:
     diagnosis = None if r.earlier else r.diagnosis
     tone, sentence = words.verdict(diagnosis, r.comparison)
-    if r.finding and diagnosis is None:
+    since = "" if diagnosis is None else sentence
+    if r.finding:
         tone, sentence = "good" if r.finding.startswith("Found") else "info", r.finding.replace("->", "→")
     head = f"<h1>thermoscope show report: {escape(r.case)}</h1>"
     head += f'<p class="verdict"><span class="{tone}">{escape(sentence)}</span></p>'
@@ -92,7 +93,8 @@ def _top(r: Report) -> str:
         items.append((f"{r.comparison['floor_K']:.2f} K", "what the sensors' own uncertainty explains"))
         if plain := best_plain_K(r.comparison):
             items.append((f"{plain:.2f} K", "the best plain model, which knows no machine, on tests it never saw"))
-    return head + html.text(words.detail(diagnosis), r.description) + (html.cards(items) if items else "")
+    below = html.text(since * bool(r.finding), words.detail(diagnosis), r.description)
+    return head + below + (html.cards(items) if items else "")
 
 
 def best_plain_K(comparison: Document) -> float | None:
@@ -148,9 +150,10 @@ def _missing(r: Report) -> str:
     by_odds = sorted(d["candidates"], key=lambda c: c.get("probability", 0.0), reverse=True)[:12]
     table = tables.candidates_table(by_odds)
     bars = candidates.posterior(d["explanations"]) if d.get("explanations") else None
+    caption = "Each leading cause and its odds; pale: with something else. Below: odds of each, alone or with others."
     texts = {c["effect"]: c["words"] for c in by_score if c.get("words")}
     parts = [
-        html.plot(bars, "odds", "Each leading cause and its odds; pale: with something else.") if bars else "",
+        html.plot(bars, "odds", caption) if bars else "",
         html.table(table, texts, DETAIL),
         html.more("Evidence of each by itself", evidence, html.table(table, texts)),
         html.headed(tables.events_table(d.get("events", []))),

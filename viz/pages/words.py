@@ -28,7 +28,7 @@ def verdict(diagnosis: Document | None, comparison: Document | None) -> tuple[st
         else f"Perhaps missing from the model: {spoken(names)}. These tests cannot tell.",
         "several": f"Missing from the model: {spoken(names)}.",
         "outside": f"Heat is missing or in excess{_where(diagnosis)}; no known effect explains it.",
-        "absorbed": "A calibrated value lies far from what is physically expected; it hides something.",
+        "absorbed": "A calibrated value lies far from what is physically expected; it may hide a missing effect.",
         "data": _elsewhere(diagnosis) or "Check the sensors and inputs first; the error looks like theirs.",
     }
     return TONE.get(code, "info"), sentences[code]

@@ -99,6 +99,8 @@ def checked_request(settings: th.Settings, request: DesignRequest) -> None:
         request.limits, temperatures_of(file.machine, sheets), "--limit", "is not a temperature of the machine"
     )
     vary = request.vary or {}
+    if not (vary or request.cycle or file.usual()):
+        raise _nothing_to_vary(inputs)
     for name in filter(file.knows, vary):
         file.variable(name, vary[name])
     variables = {*inputs, *(GAINS if request.cycle else ()), *filter(file.knows, vary), *(v.name for v in file.usual())}
@@ -151,7 +153,7 @@ def _variables(
         usual = file.usual() if file is not None else [_input(n, inputs, None) for n in flows(network, inputs)]
         usual += [] if drive is None else [_gain(key, drive, None) for key in GAINS]
         if not usual:
-            raise InputError("nothing that a design could change", "--vary", "--vary NAME=LOW:HIGH")
+            raise _nothing_to_vary(inputs)
         return usual
     out = []
     for name, bounds in vary.items():
@@ -169,6 +171,11 @@ def _variables(
             ]
             raise InputError(f"'{name}' is nothing that a design could change", "--vary", th.suggestion(name, here))
     return out
+
+
+def _nothing_to_vary(inputs: Iterable[str]) -> InputError:
+    some = f"a key of the machine file, or one of {', '.join(sorted(inputs))}"
+    return InputError("no flow, jacket or fins that a design could change", "--vary", f"--vary NAME=LOW:HIGH, {some}")
 
 
 def _input(name: str, inputs: Mapping[str, float], bounds: tuple[float, float] | None) -> Variable:

@@ -70,7 +70,7 @@ def test_a_search_that_is_stopped_gives_the_best_so_far(thermoscope, tmp_path, m
     ("arguments", "message"),
     [
         ((), "no limit is given"),
-        (("--limit", "winding=155"), "nothing that a design could change"),
+        (("--limit", "winding=155"), "no flow, jacket or fins that a design could change"),
         (("--limit", "winding=10", "--vary", "current_A"), "limit of 'winding', 10 degC, is exceeded without any load"),
         (
             ("--limit", "winding=30", "--vary", "current_A=80:90", *EFFORT),

@@ -50,8 +50,8 @@ def test_why_the_rivals_lost():
     far = {**candidate("mass@yoke", "kg", 0.001, "no"), "note": "", "score": -0.16}
     said = _lost([lead, {**close, "score": 20.0}, far], ["convection@flange"])
     assert said == [
-        "Against thermal radiation at flange: it fits T_flange in road worse (log odds -5.1).",
-        "Log odds of it 37.5 (3 is twenty to one); of rivals alone: mass@yoke -0.2.",
+        "Against 'thermal radiation at flange': it fits T_flange in road worse (log odds -5.1).",
+        "Log odds 37.5 (3 is twenty to one); of each rival alone: mass@yoke (-0.2).",
     ]
     assert _lost([far], []) == []
 

@@ -23,8 +23,7 @@ def test_what_is_beyond_two_deviations_is_said_worst_first():
         ("bias of ambient", 2.2),
     ]
     assert strain_words(off) == (
-        "To fit, the slope of body had to be moved by -0.15 (5.0 times the usual deviation), "
-        "the bias of ambient had to be moved by 1.1 K (2.2)."
+        "The fit moved the slope of body by -0.15 (5.0 times the usual deviation), the bias of ambient by +1.1 K (2.2)."
     )
     assert strain_words(case(**{"film": 5.0, "slope of body": 0.05})) == ""
     assert strain_words(case()) == ""

@@ -133,11 +133,11 @@ def test_every_end_says_how_near_the_best_plain_model_is_or_what_stops_it(case):
     both, ours = f"K, by a free network {near.plain_K:.2f} K", "each test predicted from the others "
     assert near.why == f"nothing is offered; {ours}{near.stairs[-1].left_out_K:.2f} {both}"
     assert far.why.startswith(ours)
-    assert far.why.endswith(f"{both}; what stops it: nothing is offered")
+    assert far.why.endswith(f"{both}; nothing is offered")
     worse = without(case, ("body", "ambient"))
     unseen = [replace(c, tests=(*c.tests[:2], replace(c.tests[2], role="hold-out"))) for c in (case, worse)]
     rising = ended(unseen[1], [Step(errors(c), {}) for c in unseen], SILENT, "nothing is offered")
-    assert re.search(r"; held-out tests got worse with start [0-9.]+ -> [0-9.]+ K$", rising.why)
+    assert re.search(r"; held-out tests got worse with start: [0-9.]+ -> [0-9.]+ K$", rising.why)
     short = replace(case, tests=tuple(replace(t, channels=()) for t in case.tests))
     assert end(short).why.startswith("nothing is offered; no plain model can be learnt from these tests")
 

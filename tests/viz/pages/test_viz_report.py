@@ -114,6 +114,8 @@ def test_it_carries_the_numbers_it_was_given(page):
 def test_the_verdict_comes_first_and_names_the_effect(page):
     body = page[page.index("<main>") :]
     assert body.index("Missing from the model: convection at flange.right") < body.index("<h2>")
+    found = render(Report("a", "", None, documents()[1], finding="Found: wind. Held out 1.8 -> 0.4 K."))
+    assert 0 < found.index('"good">Found: wind') < found.index("Missing from the model: "), "what was found stays first"
 
 
 def test_sections_follow_the_parts_given(page):
@@ -162,7 +164,7 @@ def test_pictures_travel_inside(page):
         ("group", "one of"),
         ("several", "and"),
         ("outside", "near flange.right"),
-        ("absorbed", "hides"),
+        ("absorbed", "hide"),
         ("data", "sensors"),
     ],
 )

@@ -176,7 +176,7 @@ def _leader(candidates: Sequence[Mapping[str, Any]]) -> list[str]:
     lines += [f"Proof: {first['isolating_test']}."] if first["isolating_test"] else []
     if first["confused_with"]:
         alike = ", ".join(words.get(name) or value_words(name) for name in first["confused_with"])
-        lines.append(f"To these tests and sensors it looks like {alike}.")
+        lines.append(f"These tests and sensors cannot tell it from {alike}.")
     return lines
 
 
@@ -186,14 +186,14 @@ def _lost(candidates: Sequence[Mapping[str, Any]], effects: Sequence[str]) -> li
         return []
     words = _words(candidates)
     refitted = [
-        f"Against {words[c['effect']]}: it {c['note']}."
+        f"Against '{words[c['effect']]}': it {c['note']}."
         for c in candidates[1:ROWS]
         if c["note"] and c["probability"] > tables.LEAST_PROBABILITY and c["effect"] not in effects
     ]
     rivals = sorted((c for c in candidates if c["effect"] not in effects and not c["note"]), key=lambda c: -c["score"])
-    each = ", ".join(f"{words[c['effect']]} {c['score']:.1f}" for c in rivals[:RIVALS])
+    each = ", ".join(f"{words[c['effect']]} ({c['score']:.1f})" for c in rivals[:RIVALS])
     lead = next(c["score"] for c in candidates if c["effect"] == effects[0])
-    evidence = f"Log odds of it {lead:.1f} (3 is twenty to one); of rivals alone: {each}."
+    evidence = f"Log odds {lead:.1f} (3 is twenty to one); of each rival alone: {each}."
     return [*refitted, evidence] if each else refitted
 
 

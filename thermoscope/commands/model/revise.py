@@ -160,10 +160,10 @@ def evidence(folder: Folder, result: revise.Revision) -> dict[str, float | str]:
     return {key: rows[0][key] for key in ("probability", "score", "threshold", "decision")} if rows else {}
 
 
-def telling(p: Mapping[str, Any]) -> tuple[bool, float]:
-    """Sorts the effects' own amplitudes first, then what lies farthest from the middle of its prior."""
+def telling(p: Mapping[str, Any]) -> tuple[bool, bool, float]:
+    """Sorts the effects' own sizes first, then their exponents, then what lies farthest from its prior."""
     low, high = p["prior"][1:]
-    return "@" not in p["name"], -abs(p["value"] - p["prior"][0]) / max(high - low, 1e-300)
+    return "@" not in p["name"], "^" in p["name"], -abs(p["value"] - p["prior"][0]) / max(high - low, 1e-300)
 
 
 def in_words(p: Mapping[str, Any]) -> dict[str, Any]:
@@ -234,6 +234,8 @@ def _unmeasured_words(places: Sequence[Mapping[str, Any]]) -> str:
 def _hidden_starts(parameters: Sequence[Mapping[str, Any]]) -> str:
     """Where what no sensor sees began, above the mean of what is read: as many as a sentence holds."""
     rows = [p for p in parameters if p["of_measurement"] and p["name"].startswith("start of ") and " in " in p["name"]]
+    rows.sort(key=lambda p: -abs(p["value"]))
     each = [f"{p['name'].removeprefix('start of ')} {p['value']:+.1f} K" for p in rows]
     more = f" and {len(each) - FEW} more" if len(each) > FEW else ""
-    return f"Began off the mean of the first readings: {', '.join(each[:FEW])}{more}." if each else ""
+    where = "Initial temperatures by the fit, above the mean of the first readings"
+    return f"{where}: {', '.join(each[:FEW])}{more}." if each else ""
