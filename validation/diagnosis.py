@@ -160,6 +160,7 @@ def infer(
     if quick:
         return first_odds
     # the noise and the ends of events were set by tangents: once refits say them better, all is weighed anew
+    progress("refitting the ends of what held for a while")
     update, noise = retimed(evidence, hypotheses, end_reach(scan), refit.fine_refit), refit.refit_noise(hypotheses)
     if noise is not None or update is not evidence:
         evidence = converged(recalibrated(update, noise or update.fit.noise))

@@ -43,7 +43,7 @@ from validation.threads import side_by_side
 Values = Mapping[str, float]
 EVERYWHERE = ("loss.constant", "convection.constant")  # at every node: a lid that is open cools what it never washed
 AS_DECLARED = ("conduction.bench", "flow", "blockage", "blockage.all", "input.factor")  # where the catalogue has them
-IN_WHOLE_TESTS = ("ambient.offset", "input.offset", "sensor.loose")
+IN_WHOLE_TESTS = ("ambient.offset", "input.offset", "sensor.loose", "loss.factor.all")
 LOOSENED = ("sensor.loose", "sensor.slip")  # at once, or as a probe does that is slow by itself
 CLOSE = 40  # samples around the most probable instant that a sensor slipped at: a block of readings is many of them
 LOOSE = 8  # sensors that may have come loose, in the tests that speak for it most, are asked when
@@ -78,7 +78,7 @@ def temporary_effects(scene: Scene) -> tuple[Effect, ...]:
 
 
 def single_test_effects(scene: Scene) -> tuple[Effect, ...]:
-    """Effects that can hold in one test: those, and a thermometer of a boundary that was elsewhere."""
+    """Effects that can hold in one test: those, other losses of a part, and a thermometer that was elsewhere."""
     return (*temporary_effects(scene), *_catalogue(scene, IN_WHOLE_TESTS))
 
 

@@ -57,6 +57,7 @@ from validation.inference.score import (
     whitened,
 )
 from validation.noise import Noise
+from validation.threads import side_by_side
 
 Values = Mapping[str, float]
 GRID_POINTS = 15  # instants around each end
@@ -297,8 +298,11 @@ def retimed(
     P = probabilities(hypotheses, 1.0)
     order = [hypotheses[i] for i in np.argsort(-P, kind="stable") if P[i] > REPORTED]
     few = [h for h in order if h.fit and h.members][:FITTED]
+    fits: dict[int, Fit] = {}
     for _ in range(MOVES):
-        new = moved_events(evidence, few, reach_s)
+        earlier, fits = fits, fits_of_events(evidence, few)
+        due = {k: fit for k, fit in fits.items() if fit is not earlier.get(k)}  # about the same fit none moves again
+        new = moved_events(evidence, due, reach_s)
         if not new:
             break
         priors: dict[Effect, float] = {e: evidence.causes[k].log_prior for k, e in new.items()}
@@ -307,20 +311,34 @@ def retimed(
     return evidence
 
 
-def moved_events(evidence: Evidence, hypotheses: Sequence[Weighed], reach_s: Mapping[str, float]) -> dict[int, During]:
-    """Events whose refits want other ends, with these."""
-    new: dict[int, During] = {}
+def fits_of_events(evidence: Evidence, hypotheses: Sequence[Weighed]) -> dict[int, Fit]:
+    """Events that have ends -> the first refit that each is in."""
+    fits: dict[int, Fit] = {}
     for h in hypotheses:
         for k in h.members:
             effect = evidence.effects[k]
-            if k in new or not isinstance(effect, During) or isinstance(effect.base, ReadingFault):
+            if not isinstance(effect, During) or isinstance(effect.base, ReadingFault):
                 continue
             if not effect.event or throughout(evidence, effect.event):
                 continue
             if h.fit is not None and effect.name in h.fit.values:  # else the machine ran away with the new ends
-                event = refit_ends(evidence, h.fit, effect, effect.event, reach_s)
-                event = further_repeats(evidence, h.fit, effect, event)
-                new[k] = During.of(effect.base, event.name)
+                fits.setdefault(k, h.fit)
+    return fits
+
+
+def moved_events(evidence: Evidence, fits: Mapping[int, Fit], reach_s: Mapping[str, float]) -> dict[int, During]:
+    """Events whose refits want other ends, or where none does further repeats, with these."""
+
+    def moved(k: int) -> During:
+        effect = evidence.effects[k]
+        assert isinstance(effect, During)
+        assert effect.event is not None
+        event = refit_ends(evidence, fits[k], effect, effect.event, reach_s)
+        if event.name == effect.event.name:  # what lasts too long takes the room of its repeats
+            event = further_repeats(evidence, fits[k], effect, event)
+        return During.of(effect.base, event.name)
+
+    new = dict(zip(fits, side_by_side(moved, fits), strict=True))
     others = {e.name for k, e in enumerate(evidence.effects) if k not in new}
     new = {k: e for k, e in new.items() if e.name != evidence.names[k] and e.name not in others}
     names = [e.name for e in new.values()]
@@ -335,8 +353,9 @@ def further_repeats(evidence: Evidence, fit: Fit, effect: During, event: Event) 
     network, now = with_condition(fit.network, effect.condition, event.name), During.of(effect.base, event.name)
     values = {**parameter_values(fit.network, {}), **fit.values}
     values[now.name] = values[effect.name]
-    more = {t.name: further_spans(network, t, values, now, fit.noise) for t in evidence.tests}
-    larger = Event.of({t: every for t, x in more.items() if (every := [*event.spans.get(t, ()), *x])})
+    more = side_by_side(lambda t: further_spans(network, t, values, now, fit.noise), evidence.tests)
+    spans = {t.name: [*event.spans.get(t.name, ()), *x] for t, x in zip(evidence.tests, more, strict=True)}
+    larger = Event.of({t: every for t, every in spans.items() if every})
     return larger if is_rare(evidence.tests, larger) else event
 
 

@@ -10,6 +10,7 @@ from two_bodies import LID, OPEN, bench, two_bodies
 
 from geom.errors import InputError
 from lumped.integration.simulate import Record, simulate
+from lumped.sources.loss_laws import PowerLoss
 from measured.case import Case, Channel, Model, Test
 from validation import diagnose
 from validation.comparison.predict import predict
@@ -222,6 +223,28 @@ def test_a_repeat_that_the_others_do_not_predict_is_left_out():
 def test_a_fan_in_one_test_is_named_with_its_test():
     whole = diagnose(bench((("noon", ((0.0, 5980.0),)),), 1.0), plan=False)
     assert whole.odds[0].effects == ("convection.constant@body in noon",)
+
+
+def test_losses_of_a_part_that_are_higher_in_one_test_are_named_as_such():
+    """Two declared losses at the core, both 1.4 times in noon: neither of them alone, and no weaker cooling."""
+    case, tests = bench(()), []
+
+    def both(factor):
+        net = two_bodies()
+        (heat,) = net.sources
+        laws = [PowerLoss(((factor * 80.0, (("load", 1.0, p),)),)) for p in (1.0, 3.0)]
+        return replace(net, sources=(replace(heat, law=laws[0]), replace(heat, name="loss:more", law=laws[1])))
+
+    for test in case.tests:
+        truth = both(1.4 if test.name == "noon" else 1.0)
+        record, rows = Record(test.time, test.signals, test.boundaries, 20.0), [c.row for c in test.channels]
+        y = simulate(truth, record, {}, rows).y
+        y = y + 0.05 * np.random.default_rng(len(tests)).standard_normal(y.shape)
+        channels = tuple(replace(c, y=y[:, i]) for i, c in enumerate(test.channels))
+        tests.append(replace(test, channels=channels))
+    found = diagnose(replace(case, model=Model(both(1.0)), tests=tuple(tests)), plan=False)
+    assert found.odds[0].effects == ("loss.factor.all@core in noon",)
+    assert found.odds[0].probability > 0.5  # a meter of the load that was off there is the other way to say it
 
 
 def test_nothing_is_no_event():

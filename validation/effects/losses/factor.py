@@ -1,8 +1,10 @@
 """A declared loss that is off by a factor."""
 
-from lumped.model.network import Network
+from lumped.model.network import Network, Source
+from lumped.model.sites import part_of
 from lumped.sources.loss_laws import declared_name
 from validation.effects.base import Effect, Scene, with_parameter
+from validation.effects.build import losses_at
 
 
 class LossFactor(Effect):
@@ -25,6 +27,28 @@ class LossFactor(Effect):
     def candidate_places(cls, scene: Scene) -> list[str]:
         return list(dict.fromkeys(declared_name(s.name) for s in scene.network.sources if not s.origin))
 
+    def sources(self, network: Network) -> list[Source]:
+        return [s for s in network.sources if declared_name(s.name) == self.place]
+
     def extend(self, network: Network) -> Network:
-        parts = (s.name for s in network.sources if declared_name(s.name) == self.place)
-        return with_parameter(network, self.parameter(*parts))
+        return with_parameter(network, self.parameter(*(s.name for s in self.sources(network))))
+
+
+class PartLossFactor(LossFactor):
+    """All declared losses of a part are larger or smaller by one share: an overload, a lost phase, shorted turns."""
+
+    kind = "loss.factor.all"
+    title = "all losses higher by a share"
+    sits = "a part with declared losses"
+    source = "definition: this part alone under another load, turns or sheets in short circuit"
+    isolating_test = "the same load again with a power meter, or with the load shared anew"
+    confused_with = ("loss.constant", "blockage", "input.factor")
+    temporary = True
+
+    @classmethod
+    def candidate_places(cls, scene: Scene) -> list[str]:
+        every = (s for s in scene.network.sources if not s.origin)
+        return list(dict.fromkeys(part_of(scene.network, s.place) for s in every))
+
+    def sources(self, network: Network) -> list[Source]:
+        return [s for s in losses_at(network, self.place) if not s.origin]
