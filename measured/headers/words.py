@@ -23,7 +23,7 @@ DIFFERENCE, CLOCKS, LOSS, OUTER, CHANNELS = (WORDS[n] for n in ("difference", "c
 EXTREME, SPREAD, MEAN, INSTRUMENT, MACHINE = (WORDS[n] for n in ("extreme", "spread", "mean", "instrument", "machine"))
 SPARE, RUNS, SUPPLY, GOES_IN, COMES_OUT = (WORDS[n] for n in ("spare", "runs", "supply", "goes_in", "comes_out"))
 STATISTICS = EXTREME | MEAN | SPREAD
-STAGE, PUMP, EXHAUST, CABINET, COLD = (WORDS[n] for n in ("stage", "pump", "exhaust", "cabinet", "cold"))
+STAGE, PUMP, EXHAUST, CABINET, COLD, SPOT = (WORDS[n] for n in ("stage", "pump", "exhaust", "cabinet", "cold", "spot"))
 INSTRUMENT |= CABINET
 PHRASES = {
     re.compile(rf"(?:(?<![^\W\d_])|(?<=[a-z])(?=[A-Z]))(?i:{phrase.replace(' ', '[ _-]?')})(?![a-zß-ÿ])"): word
@@ -61,7 +61,7 @@ def tokens(name: str) -> tuple[str, ...]:
     return tuple(out)
 
 
-PARTS = frozenset().union(*ROLES.values())
+PARTS = SPOT.union(*ROLES.values())
 TERMS = PARTS.union(*QUANTITY.values(), *WORDS.values())
 
 
@@ -151,8 +151,12 @@ def is_stage(name: str) -> bool:
 
 
 def is_rise(header: str) -> bool:
-    """Is it a difference of temperatures?"""
-    return "Δ" in header or bool(DIFFERENCE & {*tokens(header), *re.findall("[a-z]+", header.lower())})
+    """Is it a difference of temperatures, or a rate as der(T)?"""
+    return (
+        "Δ" in header
+        or header.startswith("der(")
+        or bool(DIFFERENCE & {*tokens(header), *re.findall("[a-z]+", header.lower())})
+    )
 
 
 def without_rise(name: str) -> str:
