@@ -183,7 +183,7 @@ def _inside(word: str, words: frozenset[str]) -> bool:
 def is_time(label: str) -> bool:
     """Is it a name for time?  A small t is one, a large T a temperature; "temps" of a part are temperatures."""
     words = re.split(r"[\W\d_]+", label.lower().strip())
-    if "temps" in words and roles_of(label):
+    if "temps" in words and (roles_of(label) or is_spoken(label, INSTRUMENT | SPOT)):
         return False
     starts = label.lower().startswith(("timestamp", "x_value", "zeit", "tick"))
     last = PATH.split(label)[-1].strip()
