@@ -6,7 +6,7 @@ import re
 from collections import Counter
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
-from itertools import accumulate
+from itertools import accumulate, chain
 
 import numpy as np
 
@@ -220,15 +220,9 @@ def _first(rows: Sequence[Row], width: int, where: str) -> int:
     for i in range(len(rows)):
         if all(fits[i : i + FIRM]) and len(fits[i : i + FIRM]) == FIRM:
             after = next((j for j in range(i, len(rows)) if not fits[j]), len(rows))
-            names = [c for row in rows[after : after + TALLEST] if not _readings(row) for c in map(str, trimmed(row))]
-            narrow = max(map(len, map(trimmed, rows[i:after]))) < width and len(set(names)) >= width
-            settings = (
-                narrow
-                or any(  # or before a header that stands nowhere above
-                    not _readings(row) and len({*trimmed(row)}.difference(*rows[:after])) >= width
-                    for row in rows[after : after + TALLEST]
-                )
-            )
+            heads = [{*map(str, trimmed(row))} for row in rows[after : after + TALLEST] if not _readings(row)]
+            narrow = max(map(len, map(trimmed, rows[i:after]))) < width and len({*chain(*heads)}) >= width
+            settings = narrow or any(len(head.difference(*rows[:after])) >= width for head in heads)  # none names them
             rates = _valued(rows[i]) and not _valued(rows[i + 1])
             if rates or (settings and after - i < SHORT * sum(fits)) or (labels[i] and sum(labels) < SHORT * sum(fits)):
                 continue  # also rows of rates or factors behind their labels: "Interval:", 0.5, 0.5

@@ -23,8 +23,9 @@ DIFFERENCE, CLOCKS, LOSS, OUTER, CHANNELS = (WORDS[n] for n in ("difference", "c
 EXTREME, SPREAD, MEAN, INSTRUMENT, MACHINE = (WORDS[n] for n in ("extreme", "spread", "mean", "instrument", "machine"))
 SPARE, RUNS, SUPPLY, GOES_IN, COMES_OUT = (WORDS[n] for n in ("spare", "runs", "supply", "goes_in", "comes_out"))
 STATISTICS = EXTREME | MEAN | SPREAD
-STAGE, PUMP, EXHAUST, CABINET, COLD, SPOT = (WORDS[n] for n in ("stage", "pump", "exhaust", "cabinet", "cold", "spot"))
-INSTRUMENT |= CABINET
+STAGE, PUMP, EXHAUST, CABINET, COLD = (WORDS[n] for n in ("stage", "pump", "exhaust", "cabinet", "cold"))
+SPOT, LOGGER = WORDS["spot"], WORDS["logger"]
+INSTRUMENT |= CABINET | LOGGER
 PHRASES = {
     re.compile(rf"(?:(?<![^\W\d_])|(?<=[a-z])(?=[A-Z]))(?i:{phrase.replace(' ', '[ _-]?')})(?![a-zß-ÿ])"): word
     for word, phrases in VOCABULARY["phrases"].items()

@@ -20,6 +20,7 @@ from measured.headers.words import (
     INLET,
     INSTRUMENT,
     LETTERED,
+    LOGGER,
     LOSS,
     MACHINE,
     MEAN,
@@ -66,7 +67,7 @@ UNNAMED = (-40.0, 300.0)  # degC of whatever changes slowly and has no name
 LEAST = 3  # readings of a column
 ROOM_C = (-50.0, 120.0)  # degC at which machines are started, in the cold and in an oven
 ANGLE = re.compile(r"(?i)theta(?:[_ ]?[a-z]{0,2}|[_ ]?(?:mech|elec|el|rot))$")  # of a rotor, rather than a temperature
-OMEGA = re.compile(r"(?<=[.\w]\.)w$|^w(?=$|_(?:m|r|mot|rotor|shaft|el)$)")  # beside a torque
+OMEGA = re.compile(r"(?<=\.)w$|^w(?=$|_(?:m|r|mot|rotor|shaft|el)$)")  # beside a torque
 LOAD = re.compile(r"T_?(?:load|last|mech|em|brake|shaft)")  # of a torque, where its readings are no temperature's
 AXES = ({"id", "iq"}, {"ialpha", "ibeta"})  # components whose squares add up to the current's
 OTHER_UNITS = {  # of loggers, that no table of a sheet lists: for pint
@@ -114,6 +115,7 @@ AS_WINDING = "taken as the winding"
 FASTEST, OF_STATOR = (f"{why}: {AS_WINDING}" for why in ("follows the heat fastest", "of the stator"))
 AS_TORQUE = "starts where no temperature does, beside a speed: taken as a torque in N*m"
 AS_ROOM = "taken as the room, as no other column is: is the machine in there?"
+INDOORS = "a room beside the air outside: taken as a part"
 AS_FLOW = "the speed of a fan: taken as a flow, of which only the changes count"
 ON_OFF = "on and off, by its values alone: heat, cooling, or neither?"
 OF_READINGS = "made of readings that stand nowhere, by its name"
@@ -341,13 +343,15 @@ def _read(source: Source, every: list[Guess], target: Target) -> list[Guess]:
     for i, g in enumerate(every):
         if g.column not in instruments:
             continue
+        itself = is_spoken(hot[g.column], LOGGER)
         if np.nanmax(in_memory(source, g)) > warmest:
             every[i] = replace(g, doubt=OF_DEVICE)
-        elif tested:
+        elif tested and not itself:
             every[i] = replace(g, doubt=OF_TESTED)
         else:
             device = is_spoken(g.place, INSTRUMENT) and not is_spoken(g.place, MACHINE)
-            stays = (not rest and not g.place) or device
+            alone = len(instruments) == len(hot) or not (rest or itself)  # a device is what is tested
+            stays = (alone and not g.place) or device
             every[i] = replace(g, doubt=OF_INSTRUMENT) if stays else Guess(g.column, "", doubt=OF_INSTRUMENT)
     return every
 
@@ -598,7 +602,7 @@ def _unit(source: Source, column: str, quantity: str, unit: str) -> tuple[str, s
         return ("1" if small else "%"), "no unit: by its values"
     words = {*tokens(source.labels[column])}
     robot = "velocity" in words and any("effort" in tokens(label) for label in source.labels.values())  # of ROS
-    radians = quantity == "speed" and (words & {"omega", "w"} or robot)  # by convention
+    radians = quantity == "speed" and ("omega" in words or OMEGA.search(source.labels[column]) or robot)
     first_unit = "rad/s" if radians else next(iter(QUANTITIES[quantity].units))
     return first_unit, f"{NO_UNIT}: {first_unit} is assumed"
 
@@ -613,6 +617,8 @@ def _placed(base: Guess, label: str, target: Target) -> Guess:
     weak = bool(common) and all(w.isdigit() for w in common) and not roles_of(label)
     whole = WHOLE if is_whole(label) else ""
     room = HARDLY if place == target.places_by_header.get(label) == "ambient" and not roles_of(label) else ""
+    if roles_of(label)[:1] == [Role.AMBIENT] and place == target.places_by_header.get(label) not in target.boundaries:
+        room = INDOORS
     doubt = f"or {other}" if other else room or (NUMBERED if weak else base.doubt or whole)
     return replace(base, place=place, doubt=doubt)
 

@@ -136,14 +136,10 @@ def of_machine(columns: Columns) -> Columns:
     parts = [(s, g) for s, g, place in every if g.doubt != OF_INSTRUMENT and place not in ("", *BOUNDARIES.values())]
     if parts:
         columns = [(s, Guess(g.column, "", doubt=g.doubt) if g.doubt == OF_INSTRUMENT else g) for s, g in columns]
-    rooms = {s.labels[g.column]: is_within(s.labels[g.column], OUTER) for s, g, place in every if place == "ambient"}
-    if any(rooms.values()) and not any(
-        roles_of(label) or is_whole(label) for s, g in parts if (label := s.labels[g.column])
-    ):
-        inside = {label for label, outdoors in rooms.items() if not outdoors}  # of a house a part
-        columns = [
-            (s, replace(g, place=_name(label)) if (label := s.labels[g.column]) in inside else g) for s, g in columns
-        ]
+    rooms = {s.labels[g.column] for s, g, place in every if place == "ambient" and not g.place}
+    inside = {label for label in rooms if not is_within(label, OUTER)}
+    if inside < rooms and not any(roles_of(label := s.labels[g.column]) or is_whole(label) for s, g in parts):
+        columns = [(s, replace(g, place=_name(n)) if (n := s.labels[g.column]) in inside else g) for s, g in columns]
     if any(place == "ambient" and not _leaves(s, g) for s, g, place in every):
         return _without_exhaust(columns)
     if len(parts) < 2 or any(g.why == "values" for _, g, place in every):

@@ -7,7 +7,7 @@ import pytest
 from logger_formats import signals
 
 from measured.importing.case_files import read_runs
-from measured.importing.guess import AS_TORQUE, OF_INSTRUMENT, OF_TESTED, guesses
+from measured.importing.guess import AS_TORQUE, INDOORS, OF_INSTRUMENT, OF_TESTED, guesses
 from thermoscope.commands.test.new import first_model
 
 S = signals(5.0)
@@ -100,12 +100,13 @@ def test_a_room_is_a_part_of_a_house_and_the_surroundings_of_a_machine(tmp_path,
     names = [f"{name}_temperature" for name in (part, "living_room", "outdoor")]
     found, _ = read(tmp_path, ",".join(("t [s]", *names, "power [W]")) + "\n" + body(T, W, A, A - 15, 9 * J))
     assert [name for name, place in goes(found).items() if place == "ambient"] == [f"{room}_temperature"]
+    assert (found["living_room_temperature"].doubt == INDOORS) == (room == "outdoor")
 
 
-@pytest.mark.parametrize("units", ["s,degC,degC,degC,A\n", ""])
-def test_an_index_among_others_is_no_unit(tmp_path, units):
-    found, _ = read(tmp_path, f"t,theta_w[0],theta_w[1],theta_amb,i_s\n{units}{body(T, W, W + 1, A, J)}")
-    assert [found[f"theta_w[{n}]"].quantity for n in (0, 1)] == 2 * ["temperature"]
+@pytest.mark.parametrize(("units", "other"), [("s,degC,degC,degC,A\n", 0), ("", 0), ("", 2)])
+def test_an_index_among_others_is_no_unit(tmp_path, units, other):
+    found, _ = read(tmp_path, f"t,theta_w[{other}],theta_w[1],theta_amb,i_s\n{units}{body(T, W, W + 1, A, J)}")
+    assert [found[f"theta_w[{n}]"].quantity for n in (other, 1)] == 2 * ["temperature"]
 
 
 def test_turns_per_minute_behind_a_number_in_polish(tmp_path):
