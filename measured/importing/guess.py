@@ -616,8 +616,9 @@ def _placed(base: Guess, label: str, target: Target) -> Guess:
     common = set(tokens(label)) & set(tokens(place))
     weak = bool(common) and all(w.isdigit() for w in common) and not roles_of(label)
     whole = WHOLE if is_whole(label) else ""
-    room = HARDLY if place == target.places_by_header.get(label) == "ambient" and not roles_of(label) else ""
-    if roles_of(label)[:1] == [Role.AMBIENT] and place == target.places_by_header.get(label) not in target.boundaries:
+    by_header, roles = target.places_by_header.get(label) == place, roles_of(label)[:1]
+    room = HARDLY if by_header and place == "ambient" and not roles else ""
+    if by_header and roles == [Role.AMBIENT] and place not in target.boundaries and target.boundaries:
         room = INDOORS
     doubt = f"or {other}" if other else room or (NUMBERED if weak else base.doubt or whole)
     return replace(base, place=place, doubt=doubt)
