@@ -6,7 +6,7 @@ import re
 from collections import Counter
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
-from itertools import accumulate
+from itertools import accumulate, chain
 
 import numpy as np
 
@@ -95,7 +95,9 @@ def layout(rows: Sequence[Row], where: str) -> Layout:
     unit_cells = _padded(
         unit_row[1:] if marked and unit_row and not str(unit_row[0]).strip("#%/ ") else unit_row, width
     )
-    unit_cells = ["" if name[-1:] in ")]" and split_unit(name)[1] else u for name, u in zip(names, unit_cells)]
+    unit_cells = [
+        "" if name[-1:] in ")]" and split_unit(name)[1] not in ("", "1") else u for name, u in zip(names, unit_cells)
+    ]
     if not is_unit(unit_cells[0]):
         unit_cells[0] = split_unit(unit_cells[0])[1]  # the row's own label, such as "Unit [s]"
     has_unit = [u or split_unit(name)[1] or is_time(name) for name, u in zip(names, unit_cells)]
@@ -132,6 +134,8 @@ def _block(rows: Sequence[Row], first: int, width: int) -> list[int]:
         if alone or any(map(is_date, cells)) or (1 < len(cells) < 0.5 * width and all(map(is_time, cells))):
             continue
         if len(cells) > 2 and ((len(set(cells[1:])) == 1 and is_reading(cells[1])) or _valued(cells)):
+            continue
+        if cells and re.fullmatch("#[A-Z]+", cells[0]) and len(cells) < 3:  # a mark of what follows: #TYPES, #ROWS
             continue
         if cells and ((len(cells) < 0.5 * width and not _all_units(rows[i])) or all(map(is_reading, cells))):
             break
@@ -216,8 +220,9 @@ def _first(rows: Sequence[Row], width: int, where: str) -> int:
     for i in range(len(rows)):
         if all(fits[i : i + FIRM]) and len(fits[i : i + FIRM]) == FIRM:
             after = next((j for j in range(i, len(rows)) if not fits[j]), len(rows))
-            names = [c for row in rows[after : after + TALLEST] if not _readings(row) for c in map(str, trimmed(row))]
-            settings = max(map(len, map(trimmed, rows[i:after]))) < width and len(set(names)) >= width
+            heads = [{*map(str, trimmed(row))} for row in rows[after : after + TALLEST] if not _readings(row)]
+            narrow = max(map(len, map(trimmed, rows[i:after]))) < width and len({*chain(*heads)}) >= width
+            settings = narrow or any(len(head.difference(*rows[:after])) >= width for head in heads)  # none names them
             rates = _valued(rows[i]) and not _valued(rows[i + 1])
             if rates or (settings and after - i < SHORT * sum(fits)) or (labels[i] and sum(labels) < SHORT * sum(fits)):
                 continue  # also rows of rates or factors behind their labels: "Interval:", 0.5, 0.5

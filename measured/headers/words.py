@@ -24,7 +24,8 @@ EXTREME, SPREAD, MEAN, INSTRUMENT, MACHINE = (WORDS[n] for n in ("extreme", "spr
 SPARE, RUNS, SUPPLY, GOES_IN, COMES_OUT = (WORDS[n] for n in ("spare", "runs", "supply", "goes_in", "comes_out"))
 STATISTICS = EXTREME | MEAN | SPREAD
 STAGE, PUMP, EXHAUST, CABINET, COLD = (WORDS[n] for n in ("stage", "pump", "exhaust", "cabinet", "cold"))
-INSTRUMENT |= CABINET
+SPOT, LOGGER = WORDS["spot"], WORDS["logger"]
+INSTRUMENT |= CABINET | LOGGER
 PHRASES = {
     re.compile(rf"(?:(?<![^\W\d_])|(?<=[a-z])(?=[A-Z]))(?i:{phrase.replace(' ', '[ _-]?')})(?![a-zß-ÿ])"): word
     for word, phrases in VOCABULARY["phrases"].items()
@@ -61,7 +62,7 @@ def tokens(name: str) -> tuple[str, ...]:
     return tuple(out)
 
 
-PARTS = frozenset().union(*ROLES.values())
+PARTS = SPOT.union(*ROLES.values())
 TERMS = PARTS.union(*QUANTITY.values(), *WORDS.values())
 
 
@@ -151,8 +152,12 @@ def is_stage(name: str) -> bool:
 
 
 def is_rise(header: str) -> bool:
-    """Is it a difference of temperatures?"""
-    return "Δ" in header or bool(DIFFERENCE & {*tokens(header), *re.findall("[a-z]+", header.lower())})
+    """Is it a difference of temperatures, or a rate as der(T)?"""
+    return (
+        "Δ" in header
+        or header.startswith("der(")
+        or bool(DIFFERENCE & {*tokens(header), *re.findall("[a-z]+", header.lower())})
+    )
 
 
 def without_rise(name: str) -> str:
@@ -179,7 +184,7 @@ def _inside(word: str, words: frozenset[str]) -> bool:
 def is_time(label: str) -> bool:
     """Is it a name for time?  A small t is one, a large T a temperature; "temps" of a part are temperatures."""
     words = re.split(r"[\W\d_]+", label.lower().strip())
-    if "temps" in words and roles_of(label):
+    if "temps" in words and (roles_of(label) or is_spoken(label, INSTRUMENT | SPOT)):
         return False
     starts = label.lower().startswith(("timestamp", "x_value", "zeit", "tick"))
     last = PATH.split(label)[-1].strip()

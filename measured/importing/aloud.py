@@ -28,6 +28,7 @@ from measured.importing.guess import (
     OF_DEVICE,
     OF_INSTRUMENT,
     OF_SENSOR,
+    OF_TESTED,
     OF_USER,
     UNKNOWN,
     UNTOLD,
@@ -54,8 +55,8 @@ OUTLET = "it warms with the machine: an outlet?"
 SHEETS = "tests/*.toml"  # where each column has its doubt
 PLACES = (NO_PART, NUMBERED, BY_READINGS, AS_WINDING)
 WEAK = (
-    *(NO_PART, NUMBERED, BY_READINGS, AS_WINDING, HARDLY, WHOLE, BY_LETTERS, OF_INSTRUMENT, OF_DEVICE, AS_SPEED),
-    "gives coolant already",
+    *(NO_PART, NUMBERED, BY_READINGS, AS_WINDING, HARDLY, WHOLE, BY_LETTERS, OF_INSTRUMENT, OF_DEVICE, OF_TESTED),
+    *(AS_SPEED, "gives coolant already"),
 )
 STAY = ("stays in the file as a check, and feeds nothing", "stay in the file as checks, and feed nothing")
 BROKEN = (CANNOT_BE, CODES_ALONE, OF_INSTRUMENT)  # of temperatures, which were expected to be read

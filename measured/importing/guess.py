@@ -20,6 +20,7 @@ from measured.headers.words import (
     INLET,
     INSTRUMENT,
     LETTERED,
+    LOGGER,
     LOSS,
     MACHINE,
     MEAN,
@@ -34,6 +35,7 @@ from measured.headers.words import (
     ROLES,
     SETPOINT,
     SPARE,
+    SPOT,
     SPREAD,
     SUPPLY,
     axis_of,
@@ -65,6 +67,8 @@ UNNAMED = (-40.0, 300.0)  # degC of whatever changes slowly and has no name
 LEAST = 3  # readings of a column
 ROOM_C = (-50.0, 120.0)  # degC at which machines are started, in the cold and in an oven
 ANGLE = re.compile(r"(?i)theta(?:[_ ]?[a-z]{0,2}|[_ ]?(?:mech|elec|el|rot))$")  # of a rotor, rather than a temperature
+OMEGA = re.compile(r"(?<=\.)w$|^w(?=$|_(?:m|r|mot|rotor|shaft|el)$)")  # beside a torque
+LOAD = re.compile(r"T_?(?:load|last|mech|em|brake|shaft)")  # of a torque, where its readings are no temperature's
 AXES = ({"id", "iq"}, {"ialpha", "ibeta"})  # components whose squares add up to the current's
 OTHER_UNITS = {  # of loggers, that no table of a sheet lists: for pint
     "power": ("mW", "MW", "hp", "metric_horsepower"),
@@ -91,6 +95,7 @@ IN_HEADER = "in its header,"  # another unit than by its values
 CANNOT_BE, CODES_ALONE = "cannot be right", "holds nothing but a logger's codes"
 OF_INSTRUMENT = "of the instrument itself or another device, by its name"
 OF_DEVICE = "no part of a motor by its name; it warms most"
+OF_TESTED = "no part of a motor by its name; taken as one of the device that is tested"
 DEMAND = "a set point, no reading: taken as reached"
 NUMBERED = "place by its number only"
 WHOLE = "names no part: the winding?"
@@ -108,7 +113,9 @@ FUNCTION = "made of other columns"
 OF_SENSOR = "of a sensor"
 AS_WINDING = "taken as the winding"
 FASTEST, OF_STATOR = (f"{why}: {AS_WINDING}" for why in ("follows the heat fastest", "of the stator"))
+AS_TORQUE = "starts where no temperature does, beside a speed: taken as a torque in N*m"
 AS_ROOM = "taken as the room, as no other column is: is the machine in there?"
+INDOORS = "a room beside the air outside: taken as a part"
 AS_FLOW = "the speed of a fan: taken as a flow, of which only the changes count"
 ON_OFF = "on and off, by its values alone: heat, cooling, or neither?"
 OF_READINGS = "made of readings that stand nowhere, by its name"
@@ -160,7 +167,7 @@ def guesses(source: Source, clock: Sequence[str], target: Target) -> list[Guess]
     """One per column that is not a clock."""
     every = _by_readings(source, [guess(source, c, target) for c in source.cells if c not in clock], target)
     every = _without_extremes(source, every)
-    every = _cold_start_outliers(source, _read(source, _without_functions(source, every), target))
+    every = _cold_start_outliers(source, _read(source, _without_functions(source, every), target), target)
     kelvin = sum(g.unit == "K" for g in every if g.quantity == "temperature")
     axes = {axis for g in every if g.quantity == "current" and (axis := axis_of(source.labels[g.column]))}
     both = {axis for pair in AXES if pair <= axes for axis in pair} - {axis_of(name) for name in target.inputs}
@@ -183,7 +190,8 @@ def _by_readings(source: Source, every: list[Guess], target: Target) -> list[Gue
 def _read_as(source: Source, g: Guess, starts: Sequence[float], target: Target) -> Guess:
     """A column by its readings; a doubt, where a word of its name says otherwise."""
     label, untold = source.labels[g.column], g.doubt == UNTOLD
-    if g.quantity == "temperature" or source.units[g.column] or axis_of(label) or not (untold or starts):
+    alternating = axis_of(label) or {"irms", "urms"} & {*tokens(label)}
+    if g.quantity == "temperature" or source.units[g.column] or alternating or not (untold or starts):
         return g
     if not is_like_temperature(source.numbers(g.column), starts, START_K if untold else ALIKE_K):
         return g
@@ -331,14 +339,19 @@ def _read(source: Source, every: list[Guess], target: Target) -> list[Guess]:
     warmest = max((np.nanmax(in_memory(source, g)) for g in rest), default=np.inf)
     if any(is_spoken(hot[g.column], MACHINE) or roles_of(hot[g.column]) for g in rest):
         warmest = np.inf
+    tested = any(is_spoken(hot[g.column], SPOT) for g in rest)
     for i, g in enumerate(every):
         if g.column not in instruments:
             continue
+        itself = is_spoken(hot[g.column], LOGGER)
         if np.nanmax(in_memory(source, g)) > warmest:
             every[i] = replace(g, doubt=OF_DEVICE)
+        elif tested and not itself:
+            every[i] = replace(g, doubt=OF_TESTED)
         else:
             device = is_spoken(g.place, INSTRUMENT) and not is_spoken(g.place, MACHINE)
-            stays = (len(instruments) == len(hot) and not g.place) or device
+            alone = len(instruments) == len(hot) or not (rest or itself)  # a device is what is tested
+            stays = (alone and not g.place) or device
             every[i] = replace(g, doubt=OF_INSTRUMENT) if stays else Guess(g.column, "", doubt=OF_INSTRUMENT)
     return every
 
@@ -358,6 +371,8 @@ def guess(source: Source, column: str, target: Target) -> Guess:
     if odd := _left_out(source, column):
         return Guess(column, "", doubt=odd)
     label, unit_text = source.labels[column], source.units[column]
+    if OMEGA.search(label) and any("torque" in quantities_of(other) for other in source.labels.values()):
+        label = OMEGA.sub("omega", label)
     unit = unit_of(unit_text) or _called_unit(label)
     quantity, why, doubt = _by_values(source, column) if source.unnamed else _quantity(label, unit, target)
     if not quantity:
@@ -393,7 +408,7 @@ def guess(source: Source, column: str, target: Target) -> Guess:
     return _placed(base, label, target) if quantity == "temperature" else _fed(base, label, target)
 
 
-def _cold_start_outliers(source: Source, every: list[Guess]) -> list[Guess]:
+def _cold_start_outliers(source: Source, every: list[Guess], target: Target) -> list[Guess]:
     """With a doubt at what is warm where all others start alike, as what is not of a machine at rest."""
     starts = {
         g.column: float(v[np.isfinite(v)][0])
@@ -408,6 +423,11 @@ def _cold_start_outliers(source: Source, every: list[Guess]) -> list[Guess]:
     rest = [abs(start - usual) for c, start in starts.items() if c not in odd]
     if len(rest) < max(len(odd) + 1, 3) or float(np.mean(rest)) > ALIKE_K / 2:
         return every
+    if any(g.quantity == "speed" for g in every) and not any(g.quantity == "torque" for g in every):
+        loads = {c for c in odd if LOAD.fullmatch(source.labels[c]) and not source.units[c]}
+        torque = Guess("", "torque", "N*m", why="readings", doubt=AS_TORQUE)
+        odd -= loads
+        every = [_fed(replace(torque, column=c), c, target) if (c := g.column) in loads else g for g in every]
     return [
         replace(
             g,
@@ -440,7 +460,7 @@ def _left_out(source: Source, column: str) -> str:
         return "a temperature in percent: of what?"
     words = set(tokens(label)) | set(re.findall(r"[a-z]+", label.lower()))
     if is_rise(label) and not words & QUANTITY["power"]:
-        return "a difference of temperatures, not a temperature"
+        return "a difference of temperatures, or a rate: not a temperature"
     if (parts := PATH.split(label))[1:] and parts[-1].strip().lower() in QUALITY:  # TI101.PV beside TI101.Q
         return "the quality of a reading"
     if words & SPARE:
@@ -526,8 +546,8 @@ def _quantity(label: str, unit: str, target: Target) -> tuple[str, str, str]:
         return (both or of_unit)[0], SUREST if both else "unit", doubt
     if (feeds := target.input_of(label, "")) and (quantity := target.inputs[feeds]) in (by_name or [quantity]):
         return quantity, f"name like the input {feeds}", ""
-    if roles_of(label) and by_name in ([], ["temperature"], ["vehicle_speed"]):
-        weak = not any(is_spoken(label, terms) for terms in ROLES.values())
+    if (roles_of(label) or is_spoken(label, SPOT)) and by_name in ([], ["temperature"], ["vehicle_speed"]):
+        weak = not any(is_spoken(label, terms) for terms in (*ROLES.values(), SPOT))
         return "temperature", "name of a part", BY_LETTERS if weak else ""
     if by_name and not (by_name == ["temperature"] and ANGLE.search(label)):
         worded = any(w in terms for w in tokens(label) for terms in QUANTITY.values() if len(w) > 1)
@@ -582,7 +602,8 @@ def _unit(source: Source, column: str, quantity: str, unit: str) -> tuple[str, s
         return ("1" if small else "%"), "no unit: guessed"
     words = {*tokens(source.labels[column])}
     robot = "velocity" in words and any("effort" in tokens(label) for label in source.labels.values())  # of ROS
-    first_unit = "rad/s" if "omega" in words or robot else next(iter(QUANTITIES[quantity].units))
+    radians = quantity == "speed" and ("omega" in words or OMEGA.search(source.labels[column]) or robot)
+    first_unit = "rad/s" if radians else next(iter(QUANTITIES[quantity].units))
     return first_unit, f"{NO_UNIT}: {first_unit} is assumed"
 
 
@@ -595,7 +616,10 @@ def _placed(base: Guess, label: str, target: Target) -> Guess:
     common = set(tokens(label)) & set(tokens(place))
     weak = bool(common) and all(w.isdigit() for w in common) and not roles_of(label)
     whole = WHOLE if is_whole(label) else ""
-    room = HARDLY if place == target.places_by_header.get(label) == "ambient" and not roles_of(label) else ""
+    by_header, roles = target.places_by_header.get(label) == place, roles_of(label)[:1]
+    room = HARDLY if by_header and place == "ambient" and not roles else ""
+    if by_header and roles == [Role.AMBIENT] and place not in target.boundaries and target.boundaries:
+        room = INDOORS
     doubt = f"or {other}" if other else room or (NUMBERED if weak else base.doubt or whole)
     return replace(base, place=place, doubt=doubt)
 

@@ -289,6 +289,8 @@ def _source(
             notes = [*notes, f"{file.name}: '{n}' is read in units of {factor:g} {scaled[3]}"]
     stems = Counter(label for label, unit in split.values() if unit)
     split = {n: (n, "") if _phase(n, *split[n], stems) else split[n] for n in cells}
+    others = {n: {n.replace("[1]", f"[{i}]") for i in (0, 2)} - {n} for n in cells}
+    split |= {n: (n, "") for n in cells if others[n] & cells.keys()}  # an index, no unit
     for n in cells:
         if (tenfold := TENFOLD.fullmatch(n)) and not units.get(n) and not (as_numbers(cells[n]) % 1 > 0).any():
             cells[n], split[n] = as_numbers(cells[n]) / float(tenfold[2]), split_unit(tenfold[1])

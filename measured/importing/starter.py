@@ -22,9 +22,11 @@ from measured.headers.words import (
     COMES_OUT,
     EXHAUST,
     LOSS,
+    OUTER,
     QUANTITY,
     is_setpoint,
     is_spoken,
+    is_within,
     quantities_of,
     roles_of,
     tokens,
@@ -134,6 +136,10 @@ def of_machine(columns: Columns) -> Columns:
     parts = [(s, g) for s, g, place in every if g.doubt != OF_INSTRUMENT and place not in ("", *BOUNDARIES.values())]
     if parts:
         columns = [(s, Guess(g.column, "", doubt=g.doubt) if g.doubt == OF_INSTRUMENT else g) for s, g in columns]
+    rooms = {s.labels[g.column] for s, g, place in every if place == "ambient" and not g.place}
+    inside = {label for label in rooms if not is_within(label, OUTER)}
+    if inside < rooms and not any(roles_of(label := s.labels[g.column]) or is_whole(label) for s, g in parts):
+        columns = [(s, replace(g, place=_name(n)) if (n := s.labels[g.column]) in inside else g) for s, g in columns]
     if any(place == "ambient" and not _leaves(s, g) for s, g, place in every):
         return _without_exhaust(columns)
     if len(parts) < 2 or any(g.why == "values" for _, g, place in every):
@@ -194,11 +200,14 @@ def place_of(g: Guess, label: str) -> str:
         return g.place  # as the user said
     if g.quantity != "temperature" or is_setpoint(label):
         return ""
+    return next((BOUNDARIES.get(role, "") for role in roles_of(label)), "") or _name(label)
+
+
+def _name(label: str) -> str:
+    """A node called after its column."""
     words = [w for w in tokens(PLATINUM.sub(" ", label)) if w not in QUANTITY["temperature"]]
-    role = next(iter(roles_of(label)), None)
     numbers = [w for w in words if w.isdigit()]
-    name = "-".join(words if {*words} - {*numbers} - CHANNELS else ["part", *numbers])
-    return BOUNDARIES.get(role, name) if role is not None else name
+    return "-".join(words if {*words} - {*numbers} - CHANNELS else ["part", *numbers])
 
 
 def rise(source: Source, g: Guess) -> float:

@@ -349,7 +349,7 @@ def _document(draft: Draft, role: str) -> dict[str, Any]:
         {
             "file": str(r.source.file),
             "clock": r.clock.words,
-            "rows": r.source.rows,
+            "rows": int(np.isfinite(r.clock.seconds).sum()),
             "shift_s": r.shift_s,
             "aligned_by": r.how,
             "notes": list(r.source.notes),

@@ -1,0 +1,128 @@
+"""Exports of programs: blocks of marks and set-ups over the data, devices under test, names of simulations."""
+
+import json
+
+import numpy as np
+import pytest
+from logger_formats import signals
+
+from measured.importing.case_files import read_runs
+from measured.importing.guess import AS_TORQUE, INDOORS, OF_INSTRUMENT, OF_TESTED, guesses
+from thermoscope.commands.test.new import first_model
+
+S = signals(5.0)
+T, W, H, A, J, N, M = (S[letter] for letter in "tWHAInM")
+
+
+def read(tmp_path, text, name="a.csv"):
+    """Column -> its guess, with the first network that is made of the file; and the recording."""
+    (tmp_path / name).write_text(text)
+    [(source, clock)] = read_runs(tmp_path / name)
+    target = first_model([(source, clock)], {}).target
+    return {g.column: g for g in guesses(source, clock.columns, target)}, source
+
+
+def body(*columns, mark=""):
+    return "".join(",".join(f"{mark}{v:.4g}{mark}" for v in row) + "\n" for row in zip(*columns, strict=True))
+
+
+def goes(found):
+    return {column: g.place or g.feeds for column, g in found.items() if g.used}
+
+
+def test_marks_between_names_and_readings(tmp_path):
+    head = '"#NAMES"\n"t [s]","Motor/TempEnrolamento","Ambiente/Temperatura","Inversor/Corrente_A"\n'
+    head += '"#TYPES"\n"I","D","D","D"\n"#ROWS","90"\n'
+    found, _ = read(tmp_path, head + body(T, W, A, J, mark='"'))
+    assert [*goes(found).values()] == ["motor-enrolamento", "ambient", "current_A"]
+
+
+def test_a_set_up_of_channels_as_wide_as_the_table_below_it(tmp_path):
+    head = "Channel,Name,Scale,Gain,Offset\n" + "".join(f"{n},{w},Off,1,0\n" for n, w in enumerate(("U", "air", "L1")))
+    head += "\nScan Control:\nScan,Time [s],T_winding (C),T_room (C),I (A)\n"
+    found, source = read(tmp_path, head + body(np.arange(T.size), T, W, A, J))
+    assert goes(found) == {"T_winding (C)": "winding", "T_room (C)": "ambient", "I (A)": "current_A"}
+    assert source.rows == T.size
+
+
+def test_a_break_with_remarks_early_in_a_table_costs_no_rows(tmp_path):
+    rows = body(T, W, A, J).splitlines()
+    text = ["t [s],T_winding [C],T_room [C],I [A]", *rows[:5], "pump", "by Lee", "and Kim", "then on", *rows[5:]]
+    assert read(tmp_path, "\n".join(text))[1].numbers("I [A]").size >= T.size
+
+
+@pytest.mark.parametrize(
+    ("names", "doubt"), [(("hotspot", "heatsink"), OF_TESTED), (("temps.igbt", "temps.heatsink"), OF_INSTRUMENT)]
+)
+def test_a_device_is_what_is_tested_where_nothing_else_is_warm(tmp_path, names, doubt):
+    found, _ = read(tmp_path, ",".join(("t [s]", *names, "ambient", "I [A]")) + "\n" + body(T, W, H, A, J))
+    assert [found[name].quantity for name in (*names, "ambient")] == 3 * ["temperature"]
+    assert all(found[name].place not in ("", "ambient") for name in names)
+    assert doubt in {found[name].doubt for name in names}
+
+
+def test_names_of_a_simulation(tmp_path):
+    """In kelvin; a rate is no temperature, a heat flow no water, and w beside a torque is in rad/s."""
+    names = "time,winding.T,fixedTemperature.T,der(winding.T),loss.Q_flow,motor.w,motor.tau,motor.i_rms"
+    rate = np.gradient(W, T)
+    still = np.full(T.size, 295.15)
+    found, _ = read(tmp_path, f"{names}\n{body(T, W + 273.15, still, rate, 3 * W, N / 10, M, J + 20)}")
+    assert goes(found) == {
+        "winding.T": "winding",
+        "fixedTemperature.T": "ambient",
+        "loss.Q_flow": "power_W",
+        "motor.w": "speed_rpm",
+        "motor.tau": "torque_Nm",
+        "motor.i_rms": "current_A",
+    }
+    assert found["motor.w"].unit == "rad/s"
+
+
+def test_a_junction_as_a_circuit_simulator_writes_it(tmp_path):
+    found, _ = read(tmp_path, f"time,V(tj),V(theatsink),V(tamb),I(P)\n{body(T, W, H, A, J)}")
+    assert {found[c].quantity for c in ("V(tj)", "V(theatsink)", "V(tamb)")} == {"temperature"}
+
+
+def test_a_load_among_temperatures_is_a_torque_where_it_starts_elsewhere(tmp_path):
+    found, _ = read(tmp_path, f"t,i_rms,w_mech,T_load,T_winding,T_housing,T_amb\n{body(T, J, N / 10, 4 + M, W, H, A)}")
+    assert (found["T_load"].feeds, found["T_load"].doubt) == ("torque_Nm", AS_TORQUE)
+    found, _ = read(tmp_path, f"t,i_rms,w_mech,T_load,T_winding,T_housing,T_amb\n{body(T, J, N / 10, H - 1, W, H, A)}")
+    assert found["T_load"].place == "load"
+
+
+def test_an_outer_wall_is_no_room(tmp_path):
+    found, _ = read(tmp_path, f"t [s],Camera [C],Parete esterna [C],Aria ambiente [C],I [A]\n{body(T, W, H, A, J)}")
+    assert goes(found)["Parete esterna [C]"] == "housing"
+
+
+@pytest.mark.parametrize(("part", "room"), [("buffer_tank", "outdoor"), ("winding", "living_room")])
+def test_a_room_is_a_part_of_a_house_and_the_surroundings_of_a_machine(tmp_path, part, room):
+    names = [f"{name}_temperature" for name in (part, "living_room", "outdoor")]
+    found, _ = read(tmp_path, ",".join(("t [s]", *names, "power [W]")) + "\n" + body(T, W, A, A - 15, 9 * J))
+    assert [name for name, place in goes(found).items() if place == "ambient"] == [f"{room}_temperature"]
+    assert (found["living_room_temperature"].doubt == INDOORS) == (room == "outdoor")
+
+
+@pytest.mark.parametrize(("units", "other"), [("s,degC,degC,degC,A\n", 0), ("", 0), ("", 2)])
+def test_an_index_among_others_is_no_unit(tmp_path, units, other):
+    found, _ = read(tmp_path, f"t,theta_w[{other}],theta_w[1],theta_amb,i_s\n{units}{body(T, W, W + 1, A, J)}")
+    assert [found[f"theta_w[{n}]"].quantity for n in (other, 1)] == 2 * ["temperature"]
+
+
+def test_turns_per_minute_behind_a_number_in_polish(tmp_path):
+    lines = [f"t={t:.0f} ms, T_uzwojenie={w:.2f} C, T_otoczenie={a:.2f} C, n={n + 9:.0f} obr/min" for t, w, a, n in
+             zip(1000 * T, W, A, N)]  # fmt: skip
+    found, source = read(tmp_path, "\n".join(lines), "a.log")
+    assert (found["n"].feeds, found["n"].unit) == ("speed_rpm", "rpm")
+    assert source.numbers("n")[-1] == 1509
+
+
+def test_rows_of_statistics_under_a_table_are_not_counted(tmp_path, capsys):
+    from thermoscope.commands.test.new import Wishes, new_case
+
+    text = f"t [s],T_winding [C],T_room [C],I [A]\n{body(T, W, A, J)}Mean,50,22,7\nMax,84,22.1,9\n"
+    (tmp_path / "a.csv").write_text(text)
+    document = tmp_path / "new.json"
+    assert new_case([tmp_path / "a.csv"], Wishes(out=tmp_path / "case", yes=True), str(document)) == 0
+    (test,) = json.loads(document.read_text())["tests"]
+    assert [file["rows"] for file in test["files"]] == [T.size]
