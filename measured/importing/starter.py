@@ -21,7 +21,9 @@ from measured.headers.words import (
     CHANNELS,
     COMES_OUT,
     EXHAUST,
+    INLET,
     LOSS,
+    OIL,
     OUTER,
     QUANTITY,
     is_setpoint,
@@ -140,6 +142,9 @@ def of_machine(columns: Columns) -> Columns:
     inside = {label for label in rooms if not is_within(label, OUTER)}
     if inside < rooms and not any(roles_of(label := s.labels[g.column]) or is_whole(label) for s, g in parts):
         columns = [(s, replace(g, place=_name(n)) if (n := s.labels[g.column]) in inside else g) for s, g in columns]
+    if _is_warmed_oil(every):
+        oil = {s.labels[g.column] for s, g, place in every if place == "coolant"}
+        columns = [(s, replace(g, place=_name(n)) if (n := s.labels[g.column]) in oil else g) for s, g in columns]
     if any(place == "ambient" and not _leaves(s, g) for s, g, place in every):
         return _without_exhaust(columns)
     if len(parts) < 2 or any(g.why == "values" for _, g, place in every):
@@ -155,6 +160,17 @@ def of_machine(columns: Columns) -> Columns:
     room = means[min(means)] if means else ""
     columns = [(s, replace(g, place="ambient") if g.column == room else g) for s, g in columns]
     return _without_exhaust(columns) if room else columns
+
+
+def _is_warmed_oil(every: Sequence[tuple[Source, Guess, str]]) -> bool:
+    """Is what would be the coolant oil that the machine warms, as of a transformer, a gearbox or a hydraulic unit?"""
+    fluids = [(s, g) for s, g, place in every if place == "coolant" and not g.place]
+    labels = [s.labels[g.column] for s, g in fluids]
+    flows = [s.labels[g.column] for s, g, _ in every if g.quantity == "water_flow"]
+    if any(is_spoken(label, INLET) for label in labels) or any(Role.COOLANT in roles_of(label) for label in flows):
+        return False
+    most = max((rise(s, g) for s, g, place in every if place and place != "ambient"), default=0.0)
+    return any(is_spoken(label, OIL) for label in labels) and all(rise(s, g) > STILL * most for s, g in fluids)
 
 
 def _without_exhaust(columns: Columns) -> Columns:

@@ -126,3 +126,27 @@ def test_rows_of_statistics_under_a_table_are_not_counted(tmp_path, capsys):
     assert new_case([tmp_path / "a.csv"], Wishes(out=tmp_path / "case", yes=True), str(document)) == 0
     (test,) = json.loads(document.read_text())["tests"]
     assert [file["rows"] for file in test["files"]] == [T.size]
+
+
+@pytest.mark.parametrize(
+    ("names", "places"),
+    [
+        (("Aceite superior", "Aceite inferior"), ["aceite-superior", "aceite-inferior"]),
+        (("Tank oil", "Cooler outlet oil"), ["tank-oil", "cooler-outlet-oil"]),
+        (("T_oil", "Oil inlet"), ["", "coolant"]),
+        (("T_oil", "T_water in"), ["", "coolant"]),
+    ],
+)
+def test_oil_that_the_machine_warms_is_a_part_unless_something_flows_in(tmp_path, names, places):
+    units = [f"{name} [degC]" for name in names]
+    found, _ = read(
+        tmp_path,
+        ",".join(("t [s]", "T_core [degC]", *units, "Room [degC]", "I [A]")) + "\n" + body(T, W, H, H - 1.0, A, J),
+    )
+    assert [found[name].place for name in units] == places
+
+
+def test_oil_that_a_pump_brings_stays_the_coolant(tmp_path):
+    names = "t [s],T_winding [degC],T_oil [degC],Room [degC],I [A],Oil flow [l/min]\n"
+    found, _ = read(tmp_path, names + body(T, W, H, A, J, 4.0 + 0.1 * np.sin(T)))
+    assert found["T_oil [degC]"].place == "coolant"
