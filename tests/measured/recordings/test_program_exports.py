@@ -150,3 +150,12 @@ def test_oil_that_a_pump_brings_stays_the_coolant(tmp_path):
     names = "t [s],T_winding [degC],T_oil [degC],Room [degC],I [A],Oil flow [l/min]\n"
     found, _ = read(tmp_path, names + body(T, W, H, A, J, 4.0 + 0.1 * np.sin(T)))
     assert found["T_oil [degC]"].place == "coolant"
+
+
+@pytest.mark.parametrize("word", ["Puissance chauffe", "Heizung", "Potenza riscaldamento", "Heater power"])
+def test_heaters_of_several_zones_are_an_input_each(tmp_path, word):
+    names = f"t [s],Zone 1 [degC],Zone 2 [degC],T_amb [degC],{word} 1 [W],{word} 2 [W]\n"
+    found, _ = read(tmp_path, names + body(T, W, H, A, 10.0 * J, 5.0 * J))
+    powers = [g.feeds for g in found.values() if g.quantity == "power"]
+    assert len({*powers}) == 2
+    assert all(name.endswith("_W") for name in powers)
