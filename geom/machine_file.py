@@ -14,7 +14,7 @@ from geom.description.machine import ENVELOPE, SECTIONS, Machine, check_ratings
 from geom.description.materials import read_entry
 from geom.description.names import checked_name
 from geom.description.outlines import read_outlines
-from geom.description.part import AS_IN_TABLE, Part
+from geom.description.part import Part
 from geom.description.reading import read_geometry
 from geom.description.toml_file import read_toml
 from geom.errors import InputError
@@ -236,13 +236,9 @@ def _with_materials(parts: tuple[Part, ...], materials: Mapping[str, Any], where
     for part in materials:
         if part not in names:
             raise InputError(f"unknown part {part!r}", f"{where} [materials]", f"known: {', '.join(names)}")
-    entries = {
-        part.name: read_entry(materials[part.name], part.material, f"{where} [materials] {part.name}")
-        for part in parts
-        if part.name in materials
-    }
-    return tuple(
-        replace(part, material=name, properties=properties)
-        for part in parts
-        for name, properties in [entries.get(part.name, (part.material, AS_IN_TABLE))]
-    )
+
+    def with_material(part: Part) -> Part:
+        name, properties = read_entry(materials[part.name], part.material, f"{where} [materials] {part.name}")
+        return replace(part, material=name, properties=properties)
+
+    return tuple(with_material(part) if part.name in materials else part for part in parts)

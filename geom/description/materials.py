@@ -61,6 +61,7 @@ class Material:
         return self.sources["k_plane"]
 
 
+Properties = tuple[tuple[str, float, str], ...]  # of a part: name, value, source, where not as in the table
 LIMITS = {  # from aerogel to diamond; of cp from heavy metals to wet stuffing
     "k": (0.005, 2500.0),
     "k_plane": (0.005, 2500.0),
@@ -77,7 +78,7 @@ def in_limits(key: str, value: float) -> bool:
     return low <= value <= high
 
 
-def read_entry(entry: Any, usual: str, where: str) -> tuple[str, tuple[tuple[str, float, str], ...]]:
+def read_entry(entry: Any, usual: str, where: str) -> tuple[str, Properties]:
     """What [materials] says of a part: a name of the table, or {like = NAME, k = ..., source = "..."}.
 
     usual : the name where the entry has no `like`.  k is both conductivities.
@@ -104,14 +105,14 @@ def read_entry(entry: Any, usual: str, where: str) -> tuple[str, tuple[tuple[str
     return name, tuple((key, float(value), source) for key, value in _each(numbers).items())
 
 
-def entry_of(name: str, properties: tuple[tuple[str, float, str], ...]) -> str | dict[str, Any]:
+def entry_of(name: str, properties: Properties) -> str | dict[str, Any]:
     """What `read_entry` reads as this material."""
     if not properties:
         return name
     return {"like": name, **{key: value for key, value, _ in properties}, "source": properties[0][2]}
 
 
-def with_properties(usual: Material, properties: tuple[tuple[str, float, str], ...]) -> Material:
+def with_properties(usual: Material, properties: Properties) -> Material:
     """The material with other values; their spreads stay as the table has them."""
     values: dict[str, Any] = {key: value for key, value, _ in properties}
     sources = {**usual.sources, **{key: source for key, _, source in properties}}

@@ -10,8 +10,6 @@ from geom.description.profile import Profile
 from geom.description.roles import Identity, Role, identity
 
 Prism = tuple[Profile, float, float]
-Properties = tuple[tuple[str, float, str], ...]  # name, value, source
-AS_IN_TABLE: Properties = ()
 
 
 @dataclass(frozen=True)
@@ -76,8 +74,7 @@ class Part:
         is not the material's the share of wire length along the axis
     cad_shape : what CAD files show instead of the prisms: round ports, helical channels
     role : what it is;  turns : whether it turns with the shaft, None as its role does
-    properties : of the material where they are not as in materials.toml, with their source, see
-        geom.description.materials.read_entry
+    properties : (name, value, source) of the material where it is not as in materials.toml
     Fluids may be drawn loosely: a solid wins where they overlap, and so does the fluid declared first.
     """
 
@@ -89,7 +86,7 @@ class Part:
     cad_shape: CadShape | None = None
     role: Role | None = None
     turns: bool | None = None
-    properties: Properties = AS_IN_TABLE
+    properties: tuple[tuple[str, float, str], ...] = ()
 
     @property
     def identity(self) -> Identity | None:

@@ -28,9 +28,9 @@ from pathlib import Path
 from typing import Any
 
 from geom.description.machine import SECTIONS, Machine, check_ratings, step_sidecar
-from geom.description.materials import read_entry
+from geom.description.materials import Properties, read_entry
 from geom.description.names import checked_name
-from geom.description.part import Part, Properties
+from geom.description.part import Part
 from geom.description.roles import Identity, Role
 from geom.description.toml_file import read_toml
 from geom.errors import InputError

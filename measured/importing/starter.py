@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import itertools
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -141,10 +141,8 @@ def of_machine(columns: Columns) -> Columns:
     rooms = {s.labels[g.column] for s, g, place in every if place == "ambient" and not g.place}
     inside = {label for label in rooms if not is_within(label, OUTER)}
     if inside < rooms and not any(roles_of(label := s.labels[g.column]) or is_whole(label) for s, g in parts):
-        columns = [(s, replace(g, place=_name(n)) if (n := s.labels[g.column]) in inside else g) for s, g in columns]
-    if _is_warmed_oil(every):
-        oil = {s.labels[g.column] for s, g, place in every if place == "coolant"}
-        columns = [(s, replace(g, place=_name(n)) if (n := s.labels[g.column]) in oil else g) for s, g in columns]
+        columns = _as_parts(columns, inside)
+    columns = _as_parts(columns, _warmed_oil(every))
     if any(place == "ambient" and not _leaves(s, g) for s, g, place in every):
         return _without_exhaust(columns)
     if len(parts) < 2 or any(g.why == "values" for _, g, place in every):
@@ -162,15 +160,22 @@ def of_machine(columns: Columns) -> Columns:
     return _without_exhaust(columns) if room else columns
 
 
-def _is_warmed_oil(every: Sequence[tuple[Source, Guess, str]]) -> bool:
-    """Is what would be the coolant oil that the machine warms, as of a transformer, a gearbox or a hydraulic unit?"""
+def _as_parts(columns: Columns, labels: Collection[str]) -> Columns:
+    """With these columns as parts called after them."""
+    return [(s, replace(g, place=_name(n)) if (n := s.labels[g.column]) in labels else g) for s, g in columns]
+
+
+def _warmed_oil(every: Sequence[tuple[Source, Guess, str]]) -> set[str]:
+    """What would be the coolant where that is oil that the machine warms, as of a transformer, a gearbox or a hydraulic
+    unit."""
     fluids = [(s, g) for s, g, place in every if place == "coolant" and not g.place]
-    labels = [s.labels[g.column] for s, g in fluids]
+    labels = {s.labels[g.column] for s, g in fluids}
     flows = [s.labels[g.column] for s, g, _ in every if g.quantity == "water_flow"]
-    if any(is_spoken(label, INLET) for label in labels) or any(Role.COOLANT in roles_of(label) for label in flows):
-        return False
-    most = max((rise(s, g) for s, g, place in every if place and place != "ambient"), default=0.0)
-    return any(is_spoken(label, OIL) for label in labels) and all(rise(s, g) > STILL * most for s, g in fluids)
+    comes_in = any(is_spoken(label, INLET) for label in labels) or any(Role.COOLANT in roles_of(n) for n in flows)
+    if comes_in or not any(is_spoken(label, OIL) for label in labels):
+        return set()
+    most = max(rise(s, g) for s, g, place in every if place and place != "ambient")
+    return labels if all(rise(s, g) > STILL * most for s, g in fluids) else set()
 
 
 def _without_exhaust(columns: Columns) -> Columns:
