@@ -20,7 +20,7 @@ from lumped.model.quantities import AIR, LIQUID
 from lumped.model.topology import FRICTION
 from lumped.transfer.laws import CONSTANT, Constant, Fixed, Inputs, WithTemperature
 from measured.case import Channel, Test
-from measured.doubt import USUAL, Doubt
+from measured.doubt import USUAL, Doubt, boundary_doubt
 from measured.sensors.operators import lag, setting
 from validation.calibration.input_steps import InputStep, input_steps, recorded_inputs, with_more, with_steps
 from validation.comparison.linearisation import Segment, largest_rise, segments
@@ -361,7 +361,8 @@ def named(network: Network, doubts: Sequence[Parameter], doubt: Doubt, tests: Se
     names = [p.name.removeprefix("doubt:") for p in doubts]
     beside = [f"{n} in the reading of {c}" for c, n, _ in sensed_beside(network, tests, doubt)]
     once = [f"flow of {what} in {t.name}" for what in ("air", "liquid") for t in tests]
-    return (*names, *beside, "flow of air", "flow of liquid", "jumps between samples", *once)
+    late = [f"{b} late" for b in network.boundaries]
+    return (*names, *beside, "flow of air", "flow of liquid", "jumps between samples", *once, *late)
 
 
 def step_names(tests: Sequence[Test], steps: Mapping[str, Sequence[InputStep]]) -> tuple[str, ...]:
@@ -374,16 +375,31 @@ def of_inputs(
     network: Network, test: Test, values: Mapping[str, float], doubt: Doubt, plain: Sequence[Segment], here: Array
 ) -> dict[str, Array]:
     """Channel -> (n, k): each kind of flow, as its meter may be off in all tests; what jumps between samples; each kind
-    of flow in one test after the other, as the meter may be off there alone.
+    of flow in one test after the other, as the meter may be off there alone; each boundary, as it may reach bodies late.
 
     plain : the test as recorded;  here : (n_test,) 1 for this test among those whose meters are in doubt, 0 for others
     """
-    columns = []
-    for scale in (*(_flow(network, test, doubt, quantity) for quantity in (AIR, LIQUID)), jumps(network, test, doubt)):
-        more = segments(network, [test.scaled(scale)], values) if scale else plain
-        columns.append([a.r - b.r for a, b in zip(plain, more, strict=True)])
-    every = [np.column_stack([c[i] for c in columns]) for i, _ in enumerate(plain)]
-    return {s.channel: np.hstack([x, np.kron(x[:, :2], here)]) for s, x in zip(plain, every, strict=True)}
+    scales = (*(_flow(network, test, doubt, quantity) for quantity in (AIR, LIQUID)), jumps(network, test, doubt))
+    variants = [*(test.scaled(scale) if scale else test for scale in scales), *late_boundaries(network, test, doubt)]
+    runs = [plain if now is test else segments(network, [now], values) for now in variants]
+    every = [np.column_stack([s.r - run[i].r for run in runs]) for i, s in enumerate(plain)]
+    n = len(scales)
+    return {
+        s.channel: np.hstack([x[:, :n], np.kron(x[:, :2], here), x[:, n:]])
+        for s, x in zip(plain, every, strict=True)
+    }
+
+
+def late_boundaries(network: Network, test: Test, doubt: Doubt) -> list[Test]:
+    """The test with each boundary of the network in turn late; the test itself where that one hardly moves."""
+    out = []
+    for name in network.boundaries:
+        course = np.array(np.broadcast_to(np.asarray(test.boundaries[name], float), test.time.shape))
+        late = course[:, None].copy()
+        lag(test.time, late, np.array([doubt["boundary late"]]))
+        moves = np.sqrt(np.mean((late[:, 0] - course) ** 2)) > FELT * boundary_doubt(doubt, name)
+        out.append(replace(test, boundaries={**test.boundaries, name: late[:, 0]}) if moves else test)
+    return out
 
 
 def of_steps(
