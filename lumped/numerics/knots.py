@@ -108,7 +108,7 @@ def needed(time, value, bulge, tolerance, fixed, whole, line, knot):
 def halfway(every, left, far, limits, bulge, intervals):
     """How far a factor bulges halfway between samples, into bulge; the intervals worth a closer look, into intervals.
 
-    How many these are, or -1 where the factor never changes.
+    How many these are, or -1 where the factor never changes by more than rounding.
     every : the factor at the samples, then halfway after those in `left`;  far (nt - 1,) whether an input moves far
     limits (4,) : of the largest factor what is rounding, of an interval's what is flat, what counts at least; and the
     largest factor, filled here;  bulge, intervals (nt,)
@@ -117,9 +117,9 @@ def halfway(every, left, far, limits, bulge, intervals):
     for i in range(every.size):
         least = every[i] if every[i] < least else least
         most = every[i] if every[i] > most else most
-    if least == most:
-        return -1
     scale = max(abs(least), abs(most))
+    if most - least <= limits[0] * scale:
+        return -1
     for k in range(left.size):
         off = every[nt + k] - 0.5 * (every[left[k]] + every[left[k] + 1])
         if abs(off) > limits[0] * scale:

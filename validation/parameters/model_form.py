@@ -14,6 +14,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from geom.arrays import Array
+from lumped.integration.curve import ROUNDING
 from lumped.model.network import Link, Network, Parameter, Source
 from lumped.transfer.laws import (
     CONSTANT,
@@ -64,7 +65,8 @@ class ExponentError(Wrapped):
         at = np.abs(np.asarray(self.base.size({**level, self.input: now}), float))
         right = np.abs(np.asarray(self.base.size(level), float))
         log_ratio = np.log(np.maximum(at, 1e-12 * right) / right)
-        return np.asarray(self.base.factor(inputs) * np.clip(log_ratio, -FARTHEST, FARTHEST))
+        follows = np.abs(log_ratio) > ROUNDING  # the chord of a straight law does not
+        return np.asarray(self.base.factor(inputs) * np.clip(follows * log_ratio, -FARTHEST, FARTHEST))
 
 
 def exponent_derivative(law: TemperatureLaw) -> Table | FilmTable:
@@ -105,10 +107,12 @@ def with_model_form(
             links = [x for x in network.links if first.get(x.name) == p.name]
             films = [x for x in links if p.name in added or is_film(network, x)]
             losses = [x for x in network.sources if first.get(x.name) == p.name and x.kind not in EXACT_LOSSES]
-            laws = [x.law for x in films] + [x.law for x in losses]
+            gaps = [x for x in links if x.kind == "link" and x.law.reads and x not in films]  # declared between bodies
+            follow: list[Link | Source] = [*films, *gaps, *losses]
+            laws = [x.law for x in follow]
             for name in dict.fromkeys(r for law in laws for r in law.reads if r in level):
                 if f"{p.name}^{name}" in parameters or tells_exponent(laws, name, values, level):
-                    network = _with_input(network, p.name, name, films, losses, level, doubt)
+                    network = _with_input(network, p.name, name, follow, level, doubt)
             network = _with_difference(network, p.name, films, doubt)
             network = _with_warming(network, p.name, losses, doubt)
             if p.name not in added:
@@ -152,18 +156,11 @@ def is_film(network: Network, link: Link) -> bool:
 
 
 def _with_input(
-    network: Network,
-    parent: str,
-    name: str,
-    films: Sequence[Link],
-    losses: Sequence[Source],
-    level: Mapping[str, float],
-    doubt: Doubt,
+    network: Network, parent: str, name: str, follow: Sequence[Link | Source], level: Mapping[str, float], doubt: Doubt
 ) -> Network:
     """The exponent of one input in all laws of a parameter that follow it."""
     copies: dict[str, tuple[Link | Source, Law]] = {}
-    items: list[Link | Source] = [*films, *losses]
-    for x in items:
+    for x in follow:
         if name in x.law.reads and set(x.law.reads) <= set(level):
             law = ExponentError(x.law, name, {k: level[k] for k in x.law.reads})
             copies |= {f"{x.name}^{name}": (x, law)} if law.at_work else {}

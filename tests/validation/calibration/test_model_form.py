@@ -6,11 +6,15 @@ import numpy as np
 import pytest
 from playground import Truth, network
 
+from lumped.integration.signals import Signals
+from lumped.model.build import bare_network, node_link
+from lumped.model.network import Parameter
 from lumped.transfer.exchanger import Exchanger, Flow
 from lumped.transfer.laws import Fixed, InputPower, Law, Power, WithTemperature
 from lumped.transfer.reversal import Direction
 from validation.comparison.predict import predict
 from validation.effects import effect, extended
+from validation.effects.sensors.input_fault import Shift
 from validation.parameters.model_form import ExponentError, exponent_derivative, shares, tells_exponent, with_model_form
 from validation.parameters.reference import reference_of, value_counts
 
@@ -44,6 +48,26 @@ def test_exponent_of_an_input_is_the_derivative_of_the_power():
         return 9.0 * 100.0 / 138.0 * q**n
 
     np.testing.assert_allclose(found, (powered(1 + h) - powered(1 - h)) / (2 * h), rtol=1e-6, atol=1e-9)
+
+
+def test_the_chord_of_a_straight_law_has_no_exponent():
+    """It is the same everywhere but for rounding, of which a run would make knots without end."""
+    offset = Shift(InputPower(24.1, (("flow_l_min", 10.13, 1.0),)), "flow_l_min")
+    u = {"flow_l_min": np.random.default_rng(0).uniform(4.0, 8.0, 1000)}
+    assert not ExponentError(offset, "flow_l_min", {"flow_l_min": 7.4}).factor(u).any()
+    assert Signals(u, 1000).curve("offset", offset).value.ndim == 0
+
+
+def test_a_link_between_bodies_that_follows_an_input_may_bend():
+    """A gap declared between two nodes, and a constant joint beside it, each with a parameter of its own."""
+    net = bare_network("gap", dict.fromkeys(("rotor", "stator"), 100.0), ("air",))
+    gap = node_link(net, "gap", "link", "rotor", "stator", InputPower(2.0, (("speed_rpm", 1000.0, 0.8),)))
+    joint = node_link(net, "joint", "link", "rotor", "stator", Fixed(1.0))
+    own = [Parameter(x.name, ((x.name, 1.0),), prior_sd=0.3) for x in (gap, joint)]
+    _, names = with_model_form(
+        replace(net, links=[gap, joint], parameters=tuple(own)), {"speed_rpm": 1000.0}, {"speed_rpm": 9}
+    )
+    assert names == ("gap^speed_rpm",)
 
 
 def test_one_input_of_two_is_bent_alone():

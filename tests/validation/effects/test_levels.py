@@ -60,6 +60,7 @@ def test_an_input_offset_has_its_prior_on_the_level_of_the_input(scale):
     louder = replace(test, inputs={**test.inputs, "current_A": scale * test.inputs["current_A"]})
     net = effect("input.offset@current_A").extend(machine())
     p = at_test(net, {net.parameters[-1].name}, louder).parameters[-1]
+    assert p.unit == "A"
     level = scale * float(np.sqrt(np.mean(test.inputs["current_A"] ** 2)))
     assert (p.prior_sd, p.low, p.high) == pytest.approx((0.05 * level, -0.5 * level, 0.5 * level))
 

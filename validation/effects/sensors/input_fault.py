@@ -8,10 +8,10 @@ from typing import ClassVar
 import numpy as np
 
 from lumped.model.network import Link, Network, Source
-from lumped.model.quantities import INPUTS
 from lumped.model.sites import standing_links, standing_sources
 from lumped.transfer.laws import Array, Inputs, Wrapped
 from lumped.transfer.ranges import within_silence
+from measured.recordings.units import MEMORY_UNIT, SWITCHED
 from validation.effects.base import Effect, Scene, with_parameter
 from validation.effects.build import copy_elements
 
@@ -117,4 +117,5 @@ class InputOffset(InputFault):
     chord = Shift
 
     def unit_of(self, network: Network) -> str:
-        return INPUTS.get(network.measures(self.place), "_1").rpartition("_")[2]
+        quantity = network.measures(self.place)
+        return "%" if quantity in SWITCHED else MEMORY_UNIT.get(quantity, "1")
