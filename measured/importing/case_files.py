@@ -40,6 +40,7 @@ FEW = 12  # rows that show no relation
 TOGETHER, ALWAYS = 0.95, 0.98  # correlation of two powers that pass through one machine; share of rows
 EFFICIENCY = 0.5  # of a machine, at least
 IDLE = 0.02  # of the largest
+LEARNT_EXPONENT = '"input exponent" = 0.3'  # films follow speed and flow to the 0.5 to 0.8, iron to the 1 to 2
 ROLES = ("calibrate", "validate", "hold-out")
 
 
@@ -116,6 +117,7 @@ def write_case(
         f"sample_s = {sample_of(drafts):g}",
         *[f"guesses = {toml_value(doubts)}   # compare repeats it: take out what you have checked"] * bool(doubts),
         "",
+        *["[doubt]   # the exponents of a learnt network are 1 or 2, of no correlation", LEARNT_EXPONENT, ""] * learnt,
     ]
     for draft, role, names in zip(drafts, roles(len(drafts), learnt), sensor_names(drafts), strict=True):
         lines += [f"[tests.{toml_key(draft.name)}]", f'role = "{role}"', ""]

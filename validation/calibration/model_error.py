@@ -375,7 +375,7 @@ def of_inputs(
     network: Network, test: Test, values: Mapping[str, float], doubt: Doubt, plain: Sequence[Segment], here: Array
 ) -> dict[str, Array]:
     """Channel -> (n, k): each kind of flow, as its meter may be off in all tests; what jumps between samples; each kind
-    of flow in one test after the other, as the meter may be off there alone; each boundary, as it may reach bodies late.
+    of flow in one test after the other, as the meter may be off there alone; each boundary, that may come late.
 
     plain : the test as recorded;  here : (n_test,) 1 for this test among those whose meters are in doubt, 0 for others
     """
@@ -385,8 +385,7 @@ def of_inputs(
     every = [np.column_stack([s.r - run[i].r for run in runs]) for i, s in enumerate(plain)]
     n = len(scales)
     return {
-        s.channel: np.hstack([x[:, :n], np.kron(x[:, :2], here), x[:, n:]])
-        for s, x in zip(plain, every, strict=True)
+        s.channel: np.hstack([x[:, :n], np.kron(x[:, :2], here), x[:, n:]]) for s, x in zip(plain, every, strict=True)
     }
 
 

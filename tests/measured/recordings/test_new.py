@@ -14,6 +14,7 @@ from two_bodies import bench
 
 from geom.errors import InputError, MissingDependency
 from lumped.declarations.network import load_network
+from measured.doubt import USUAL
 from measured.headers.cells import number, split_unit
 from measured.importing.clock import clock_of
 from measured.importing.guess import guesses
@@ -351,6 +352,7 @@ def test_a_power_that_changes_sign_passes_through_and_heats_nothing(tmp_path, ca
     (tmp_path / "a.csv").write_text(f"time_s,P_el [W],I [A],T_winding [degC]\n{rows}\n")
     case = made(tmp_path, tmp_path / "a.csv")
     assert {"current_A"} == case.model.network.inputs
+    assert case.doubt["input exponent"] > USUAL["input exponent"]  # that heat goes with a square is learnt
     assert np.isfinite(compare(case).rmse_K)
 
 

@@ -118,15 +118,34 @@ def test_a_flow_meter_may_be_off_in_one_test_alone(case):
     """The kinds of flow come once for all tests, then for each test, where the others have nothing."""
     error, names = model_error(network(), case.tests, {}), [t.name for t in case.tests]
     first = error.names.index(f"flow of air in {names[0]}")
-    assert error.names[first : error.model_columns] == tuple(
-        f"flow of {x} in {n}" for x in ("air", "liquid") for n in names
-    )
+    each = [f"flow of {x} in {n}" for x in ("air", "liquid") for n in names]
+    assert error.names[first : first + len(each)] == tuple(each)
     for s in segments(network(), case.tests, {}):
         columns, k = error.of(s), names.index(s.test)
         own = columns[:, first + k]
         np.testing.assert_allclose(own, columns[:, error.names.index("flow of air")])
         assert np.abs(own).max() > 0.01
         assert not columns[:, first + 1 - k].any()
+
+
+def test_a_boundary_that_moves_is_doubted_by_what_it_does_late():
+    """One body of 200 s whose inlet falls by 8 K at once, against two lags in a row in closed form; nothing where the
+    inlet stands."""
+    net = bare_network("one", {"block": 200.0}, ("inlet",))
+    net = replace(net, links=[node_link(net, "film", "film", "block", "inlet", Fixed(1.0))])
+    time = np.arange(0.0, 2000.0, 1.0)
+    fallen = np.where(time < 500.0, 28.0, 20.0)
+    sensor = Channel("T", "block", net.places["block"].mean, fallen)
+
+    def column(inlet):
+        test = Test("run", "calibrate", time, {}, {"inlet": inlet}, (sensor,), initial=28.0)
+        error = model_error(net, [test], {}, {**USUAL, "total": 1.0})
+        return error.of(segments(net, [test], {})[0])[:, error.names.index("inlet late")]
+
+    t = np.arange(0.0, 1500.0, 1.0)
+    behind = 8.0 * (200 * np.exp(-t / 200) - 30 * np.exp(-t / 30)) / 170 - 8.0 * np.exp(-t / 200)
+    assert np.max(column(fallen)) == pytest.approx(np.max(behind), rel=0.05)
+    assert not column(np.full(time.size, 28.0)).any()
 
 
 def test_a_core_follows_its_node():
