@@ -189,6 +189,15 @@ def test_the_same_stages_once_more_are_waited_for():
     assert all(a != b for a, b in zip(seen, seen[20:]))
 
 
+def test_that_another_case_was_done_after_its_first_step_says_nothing_of_this_one():
+    """It found nothing: after its tables one step was said, and no more. Of this case a second round may come."""
+    clock, last = Clock(), {"fitting": 10.0, "looking": 20.0, "1 step": 0.1}
+    for same_case, least in ((True, 0.0), (False, 29.0)):
+        stages = ProgressBar(dict(last), clock, same_case=same_case)
+        worked(stages, clock, [("fitting", 10.0), ("looking", 20.0)])
+        assert least <= stages.left()[1] <= least + 2.0
+
+
 @pytest.mark.parametrize(
     ("share", "rest", "words"),
     [
