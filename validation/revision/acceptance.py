@@ -19,6 +19,8 @@ from measured.case import Test
 from measured.sensors.blocks import groups
 from validation.calibration.calibrate import ROUGH, CachedSegments, Fit, minimise
 from validation.comparison.linearisation import Segment, segments
+from validation.effects.registry import effect
+from validation.effects.sensors.input_fault import InputFault
 from validation.noise import FOLLOWED, Noise
 from validation.parameters.unknowns import Unknowns, sorted_unknowns, to_value
 
@@ -244,16 +246,16 @@ def rms(folds: Sequence[FoldPrediction]) -> float:
 def bound_check(fit: Fit, name: str) -> Check:
     """Whether an amplitude is inside its bounds: told, and no reason to refuse what predicts.
 
-    What is fitted to nothing is refused; and a room or inlet that would have to be further off than any reading is:
-    there something else is wrong.
+    What is fitted to nothing is refused; and a room, inlet or input that would have to be further off than any reading
+    is: there something else is wrong.
     """
     k = fit.unknowns.names.index(name)
     p, value = fit.unknowns.parameters[k], to_value(fit.unknowns.parameters[k], float(fit.theta[k]))
     inside = f"{name} {value:.3g} lies between {p.low:.5g} and {p.high:.5g} {p.unit}"
     if fit.at_bound[k] and value == p.neutral:
         return Check("bounds", False, value, p.high, f"{name} is fitted to {value:.3g} {p.unit}: it is not there")
-    if fit.at_bound[k] and p.targets[0][0].startswith("boundary:"):
-        words = f"{name} would have to be more than {value:.3g} {p.unit}: no boundary is read so far off"
+    if fit.at_bound[k] and (p.targets[0][0].startswith("boundary:") or isinstance(effect(name), InputFault)):
+        words = f"{name} would have to be more than {value:.3g} {p.unit}: nothing is read so far off"
         return Check("bounds", False, value, p.high, words)
     at = f"{name} sticks to the bound of what is physical, {value:.3g} {p.unit}: something else may take part"
     return Check("bounds", True, value, p.high, at if fit.at_bound[k] else inside)

@@ -207,8 +207,9 @@ def test_a_calibration_is_not_kept_if_its_own_tests_lose_by_it():
     assert judge("calibrate", done.tests, (), (worse,), {"odd"})[1].startswith(worse.words)
 
 
-def test_a_room_further_off_than_any_reading_is_refused():
-    """A body 15 K too warm for its room; the room may be off by 10 K. A film at its bound may still predict."""
+def test_a_room_or_an_input_further_off_than_any_reading_is_refused():
+    """A body 15 K too warm for its room; the room may be off by 10 K. A film at its bound may still predict; the same
+    number by the name of a meter's error may not."""
     far = Parameter(
         "ambient.offset@ambient",
         (("boundary:ambient", 1.0),),
@@ -220,8 +221,9 @@ def test_a_room_further_off_than_any_reading_is_refused():
         neutral=0.0,
         unit="K",
     )
-    narrow = replace(FILM, low=0.8, high=1.25)
-    for p, passes in ((far, False), (narrow, True)):
+    narrow = replace(FILM, name="convection@body", low=0.8, high=1.25)
+    meter = replace(narrow, name="input.offset@flow_l_min")
+    for p, passes in ((far, False), (narrow, True), (meter, False)):
         test = measured("one", shift=15.0)
         fit = minimise(one_node(p), [test], Unknowns((p,)), np.zeros(1))
         assert fit.at_bound[0]
