@@ -84,7 +84,7 @@ class ProgressBar:
     def __post_init__(self) -> None:
         self.blocks = max((int(_block(stage) or 0) for stage in self.last), default=0)
         if self.blocks and not self.same_case:  # that another case was done after the first says nothing of this one
-            self._foretell(1)
+            self._repeat_block(1)
 
     def enter(self, message: str) -> bool:
         """Whether another stage begins; messages that begin with the same word are of one stage.
@@ -117,9 +117,9 @@ class ProgressBar:
         self.block += 1
         more = int(self.block > self.blocks or not self.same_case)
         for number in range(self.blocks + 1, self.block + more + 1):
-            self._foretell(number)
+            self._repeat_block(number)
 
-    def _foretell(self, number: int) -> None:
+    def _repeat_block(self, number: int) -> None:
         """The stages of the block before come once more."""
         before = str(number - 1 or "")
         again = [s for s in self.last if _block(s) == before and _word(s) not in PREPARING]
