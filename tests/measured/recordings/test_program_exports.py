@@ -159,3 +159,16 @@ def test_heaters_of_several_zones_are_an_input_each(tmp_path, word):
     powers = [g.feeds for g in found.values() if g.quantity == "power"]
     assert len({*powers}) == 2
     assert all(name.endswith("_W") for name in powers)
+
+
+def test_a_sign_behind_the_last_name_and_readings_under_it(tmp_path):
+    found, _ = read(tmp_path, "t [s],T_coil [degC],I [A],\n" + body(T, W, J, 100 + T))
+    assert goes(found) == {"T_coil [degC]": "coil", "I [A]": "current_A"}
+
+
+def test_remarks_behind_a_row_that_is_not_the_first(tmp_path):
+    rows = body(T, W, J).splitlines()
+    rows[1] += ",remark,1,2,3"
+    found, source = read(tmp_path, "\n".join(["t [s],T_coil [degC],I [A]", *rows]) + "\n")
+    assert goes(found) == {"T_coil [degC]": "coil", "I [A]": "current_A"}
+    assert source.numbers("T_coil [degC]").size == T.size
