@@ -172,3 +172,24 @@ def test_remarks_behind_a_row_that_is_not_the_first(tmp_path):
     found, source = read(tmp_path, "\n".join(["t [s],T_coil [degC],I [A]", *rows]) + "\n")
     assert goes(found) == {"T_coil [degC]": "coil", "I [A]": "current_A"}
     assert source.numbers("T_coil [degC]").size == T.size
+
+
+def test_few_rows_of_fewer_cells_are_left_out_and_said(tmp_path):
+    """The reading that is missing is not the last one: those behind it would stand under other names."""
+    rows = body(T, W, H, J).splitlines()
+    rows[40] = rows[40].rpartition(",")[0]
+    _, source = read(tmp_path, "\n".join(["t [s],T_coil [degC],T_frame [degC],I [A]", *rows]) + "\n")
+    assert source.notes[0].endswith(": 1 rows have fewer cells than the others: left out")
+    assert np.isfinite(source.numbers("I [A]")).all()
+    many = [row.rpartition(",")[0] if k % 2 else row for k, row in enumerate(rows)]  # its end is empty
+    _, source = read(tmp_path, "\n".join(["t [s],T_coil [degC],T_frame [degC],I [A]", *many]) + "\n")
+    assert source.numbers("T_coil [degC]").size == T.size
+
+
+def test_names_without_a_blank_over_instants_with_several(tmp_path):
+    names = ("motor_winding", "room_air", "supply_current")
+    stamps = [f"2025-11-12 17:{k // 60:02d}:{k % 60:02d}.000 UTC" for k in range(T.size)]
+    columns = zip(stamps, zip(W, A, J, strict=True), strict=True)
+    rows = [f"{stamp},{n},{v:.12f}\n" for stamp, row in columns for n, v in zip(names, row, strict=True)]
+    found, _ = read(tmp_path, "time,signal,value\n" + "".join(rows))
+    assert [*goes(found).values()] == ["motor-winding", "ambient", "current_A"]
