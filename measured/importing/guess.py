@@ -93,7 +93,7 @@ FOREIGN = re.compile(r"\[([^\]]*[A-Za-z°µ%][^\]]*)\]\s*$")  # what stands in b
 ROUND = re.compile(r"\(([^()]*[A-Za-z°µ%][^()]*)\)\s*$")  # or remarks
 IN_HEADER = "in its header,"  # another unit than by its values
 CANNOT_BE, CODES_ALONE = "cannot be right", "holds nothing but a logger's codes"
-UNCHANGED = "never changes: a limit, or a dead sensor"
+DEAD = "never changes: a limit, or a dead sensor"
 OF_INSTRUMENT = "of the instrument itself or another device, by its name"
 OF_DEVICE = "no part of a motor by its name; it warms most"
 OF_TESTED = "no part of a motor by its name; taken as one of the device that is tested"
@@ -333,7 +333,7 @@ def _read(source: Source, every: list[Guess], target: Target) -> list[Guess]:
     parts = [c for c in hot if not of_edge(roles_of(hot[c]))]
     still = {c for c in parts if np.nanmax(values := source.numbers(c)) == np.nanmin(values)}
     if still != {*parts}:
-        every = [g.without(UNCHANGED) if g.column in still else g for g in every]
+        every = [g.without(DEAD) if g.column in still else g for g in every]
     models = {c for c, label in hot.items() if MODELLED & {*tokens(PATH.split(label)[-1])}}
     if len(models) < len(hot):
         every = [Guess(g.column, "", doubt="modelled, not read") if g.column in models else g for g in every]
@@ -369,7 +369,7 @@ def _read(source: Source, every: list[Guess], target: Target) -> list[Guess]:
             alone = len(instruments) == len(hot) or not (rest or itself)  # a device is what is tested
             stays = (alone and not g.place) or device
             every[i] = replace(g, doubt=OF_INSTRUMENT) if stays else Guess(g.column, "", doubt=OF_INSTRUMENT)
-    return [Guess(g.column, "", doubt=g.doubt) if g.doubt == UNCHANGED else g for g in every]  # a cabinet may stay
+    return every
 
 
 def is_of_flow(label: str) -> bool:

@@ -13,6 +13,7 @@ from shlex import quote
 
 import numpy as np
 
+from geom.arrays import Array
 from geom.description.names import is_plain
 from geom.description.roles import Role
 from geom.errors import InputError
@@ -34,7 +35,7 @@ from measured.headers.words import (
     roles_of,
     tokens,
 )
-from measured.importing.guess import AS_WINDING, AXES, OF_INSTRUMENT, ON_OFF, UNTOLD, Array, Guess, in_memory, is_whole
+from measured.importing.guess import AS_WINDING, AXES, DEAD, OF_INSTRUMENT, ON_OFF, UNTOLD, Guess, in_memory, is_whole
 from measured.importing.relations import names_of
 from measured.importing.source import Source
 
@@ -224,7 +225,7 @@ def place_of(g: Guess, label: str) -> str:
     """A node called after the column, or the boundary that its name means; "" for what is not a temperature."""
     if g.place and g.quantity == "temperature":
         return g.place  # as the user said
-    if g.quantity != "temperature" or is_setpoint(label):
+    if g.quantity != "temperature" or is_setpoint(label) or g.doubt == DEAD:
         return ""
     return next((BOUNDARIES.get(role, "") for role in roles_of(label)), "") or _name(label)
 

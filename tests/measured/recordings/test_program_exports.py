@@ -8,7 +8,7 @@ from logger_formats import signals
 
 from geom.errors import InputError
 from measured.importing.case_files import read_runs
-from measured.importing.guess import AS_TORQUE, BY_READINGS, INDOORS, OF_INSTRUMENT, OF_TESTED, UNCHANGED, guesses
+from measured.importing.guess import AS_TORQUE, BY_READINGS, DEAD, INDOORS, OF_INSTRUMENT, OF_TESTED, guesses
 from thermoscope.commands.test.new import first_model
 
 S = signals(5.0)
@@ -216,7 +216,7 @@ def test_numbered_columns_beside_one_that_reads_like_a_temperature(tmp_path):
 def test_a_device_beside_a_dead_sensor_is_what_is_tested(tmp_path):
     found, _ = read(tmp_path, "t [s],temp_mos_1,temp_motor,I [A]\n" + body(T, W, 39.2 + 0 * T, J))
     assert (found["temp_mos_1"].place, found["temp_mos_1"].doubt) == ("mos-1", OF_INSTRUMENT)
-    assert (found["temp_motor"].place, found["temp_motor"].doubt) == ("", UNCHANGED)
+    assert (found["temp_motor"].place, found["temp_motor"].doubt) == ("", DEAD)
 
 
 def test_a_power_in_a_torques_unit_is_doubted(tmp_path):
