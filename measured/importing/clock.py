@@ -256,6 +256,10 @@ def checked(clock: Clock, source: Source) -> Clock:
         at = np.flatnonzero(finite)[back[0] + 1]
         t[at:] += HOUR_S
         doubts.append(f"the clock runs back by an hour in row {at + 1}: taken as the end of summer time")
+    elif back.size == 1 and back[0] < LEAST and step.size > FEWEST:
+        t[: (at := int(np.flatnonzero(finite)[back[0] + 1]))] = np.nan
+        finite = np.isfinite(t)
+        doubts.append(f"{at} rows over the clock's start are left out: means, or limits")
     elif back.size:
         what = f"the clock runs back by {-step[back[0]]:g} s in row {int(back[0]) + 2} of the readings"
         raise InputError(what, where, "rows in the order of time")

@@ -244,3 +244,16 @@ def test_seconds_since_1970_without_a_name_are_a_clock_where_they_run_back(tmp_p
 def test_a_refusal_names_columns_that_nobody_understood(tmp_path):
     with pytest.raises(InputError, match=r"'QX', 'QY': neither name nor unit.*--place QX=PLACE"):
         read(tmp_path, "t [s],QX,QY\n" + body(T, 1000 + W, 900 * J))
+
+
+def test_means_and_limits_over_the_readings_are_left_out_and_said(tmp_path):
+    """A clock that runs back later is refused, as before."""
+    rows = body(T, W, J).splitlines()
+    text = ["t [s],T_coil [degC],I [A]", "0.1,25,3", "450,90,9", *rows]
+    (tmp_path / "a.csv").write_text("\n".join(text) + "\n")
+    [(source, clock)] = read_runs(tmp_path / "a.csv")
+    assert source.numbers("T_coil [degC]")[np.isfinite(clock.seconds)] == pytest.approx(W, rel=1e-3)
+    assert "2 rows over the clock's start are left out" in clock.doubt
+    (tmp_path / "a.csv").write_text("\n".join([text[0], *rows[:5], "0.1,25,3", *rows[5:]]) + "\n")
+    with pytest.raises(InputError, match="runs back"):
+        read_runs(tmp_path / "a.csv")
