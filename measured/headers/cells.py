@@ -124,7 +124,7 @@ def is_reading(cell: object) -> bool:
     return text.lower() in EMPTY | SWITCH.keys() or is_clock(text) or is_date(text)
 
 
-PER_TIME = re.compile(r"/([hs])(?:(?<=h)(?:ou)?rs?|(?<=s)ec)$")  # m3/hr, l/sec
+PER_TIME = re.compile(r"/(h|s|min)(?:(?<=h)(?:ou)?rs?|(?<=s)ec(?:ond)?|(?<=min)ute)$")  # m3/hr, l/sec
 
 
 def unit_of(text: str) -> str:
@@ -149,7 +149,7 @@ INNER = re.compile(r"^([^,]+),\s*([^\s,()]+)\s*(\(.+\))$")  # Temp, °F (LGR S/N
 SERIAL = re.compile(r"(?:LGR |SEN )?S/N: ?\w+(?:, )?")  # of a logger and its sensor: LGR is not a bearing
 BEFORE = re.compile(r"^(?:M\d\d:\s*|(?=[°º]))(\S+)\s+(\S.*)$")  # M00: °C Wicklung, °C Wicklung
 BARS = re.compile(r'^"?([^|"]+)"?\|"?([^|"]*)"?(?:\|[^|]*)+$')  # MotorTemp|"C"|0.0|300.0|5
-RATIO = re.compile(r"^(.*[^\W_])_(?!per_)([a-z]+\d?|1)(?:_per)?_(s|sec|min|h|hr)$")  # speed_rad_s, flow_l_per_min
+RATIO = re.compile(r"^(.*[^\W_])_(?!per_)([a-z]+\d?|1)(?:_per)?_(s|sec(?:ond)?|min(?:ute)?|h(?:ou)?r?)$")  # flow_l_s
 JOINT = re.compile(r"([Tt]ime)(US|MS|NS)")  # of flight controllers
 TRAILING = re.compile(r"^(.*?)(?:_|\s*/\s*|\s+in\s+|[,:]\s*|\s+)((?:deg(?:rees?)?[ _])?[^\s_/]+(?:/[^\W_A-Z]+)?)$")
 

@@ -62,6 +62,7 @@ def layout(rows: Sequence[Row], where: str) -> Layout:
             names = ["", *names]
         elif not any(number(cell) == number(cell) for cell in ends[1]):  # remarks behind the readings
             names = [*names, ""]
+    names += [""] * (min(len(rows[header]), width) - len(names))  # a sign behind the last name, and cells under it
     if len(names) < width:
         right = "as many as names: decimal commas become points, or columns stand between ';'"
         raise InputError(f"{width} values under {len(names)} names", where, right)
@@ -226,7 +227,7 @@ def _first(rows: Sequence[Row], width: int, where: str) -> int:
             rates = _valued(rows[i]) and not _valued(rows[i + 1])
             if rates or (settings and after - i < SHORT * sum(fits)) or (labels[i] and sum(labels) < SHORT * sum(fits)):
                 continue  # also rows of rates or factors behind their labels: "Interval:", 0.5, 0.5
-            while i and len(rows[i - 1]) >= len(rows[i]) and _kinds(rows[i - 1], width) == _kinds(rows[i], width):
+            while i and len(rows[i - 1]) >= width and _kinds(rows[i - 1], width) == _kinds(rows[i], width):
                 if _valued(rows[i - 1]):
                     break
                 i -= 1  # a remark behind the readings of a first row

@@ -256,6 +256,10 @@ def checked(clock: Clock, source: Source) -> Clock:
         at = np.flatnonzero(finite)[back[0] + 1]
         t[at:] += HOUR_S
         doubts.append(f"the clock runs back by an hour in row {at + 1}: taken as the end of summer time")
+    elif back.size == 1 and back[0] < LEAST and step.size > FEWEST:
+        t[: (at := int(np.flatnonzero(finite)[back[0] + 1]))] = np.nan
+        finite = np.isfinite(t)
+        doubts.append(f"{at} rows over the clock's start are left out: means, or limits")
     elif back.size:
         what = f"the clock runs back by {-step[back[0]]:g} s in row {int(back[0]) + 2} of the readings"
         raise InputError(what, where, "rows in the order of time")
@@ -576,7 +580,7 @@ def _numeric(source: Source) -> Clock | None:
         return Clock(source.numbers(TIME), source.start, (TIME,), "the format's own time")
     if candidates or TIME in by_name:
         return _scaled(source, candidates[0] if candidates else TIME)
-    if source.unnamed and rises(source, numeric[0]):
+    if source.unnamed and (rises(source, numeric[0]) or _since_1970(source, numeric[0])):
         return _scaled(source, numeric[0])
     cells = {c: source.numbers(c).tobytes() for c in numeric if rises(source, c)}
     repeated = [c for c in cells if [*cells.values()].count(cells[c]) > 1]  # one clock beside every signal
@@ -588,8 +592,7 @@ def rises(source: Source, column: str) -> bool:
     """Numbers that never fall."""
     if not source.is_numeric(column):
         return False
-    values = source.numbers(column)
-    finite = values[np.isfinite(values)]
+    finite = source.finite(column)
     return finite.size > 2 and bool((np.diff(finite) >= 0).all()) and bool(finite[-1] > finite[0])
 
 
@@ -598,7 +601,7 @@ def _unit_of_time(source: Source, column: str) -> str:
     for text in (source.units[column], source.labels[column]):
         if (unit := unit_of(text)) in TIME_UNITS:
             return unit
-    return ""
+    return "ms" if {*tokens(source.labels[column])} & {*MILLISECONDS} else ""  # ms_today
 
 
 def is_second_clock(source: Source, column: str) -> bool:
@@ -618,8 +621,7 @@ def _is_named(source: Source, column: str) -> bool:
 
 def _since_1970(source: Source, column: str) -> bool:
     """Are its numbers seconds since 1970, or parts of them, as they are now?"""
-    values = source.numbers(column)
-    first = float(values[np.isfinite(values)][0])
+    first = float(source.finite(column)[0])
     return any(size <= first < 2 * size for size in UNIX)
 
 

@@ -93,6 +93,7 @@ FOREIGN = re.compile(r"\[([^\]]*[A-Za-z°µ%][^\]]*)\]\s*$")  # what stands in b
 ROUND = re.compile(r"\(([^()]*[A-Za-z°µ%][^()]*)\)\s*$")  # or remarks
 IN_HEADER = "in its header,"  # another unit than by its values
 CANNOT_BE, CODES_ALONE = "cannot be right", "holds nothing but a logger's codes"
+DEAD = "never changes: a limit, or a dead sensor"
 OF_INSTRUMENT = "of the instrument itself or another device, by its name"
 OF_DEVICE = "no part of a motor by its name; it warms most"
 OF_TESTED = "no part of a motor by its name; taken as one of the device that is tested"
@@ -184,7 +185,21 @@ def _by_readings(source: Source, every: list[Guess], target: Target) -> list[Gue
     hot = [g for g in every if g.quantity == "temperature" and not is_setpoint(source.labels[g.column])]
     firsts = [v[np.isfinite(v)][:FIRST_ROWS] for g in hot for v in [in_memory(source, g)]]
     starts = [float(np.median(v)) for v in firsts if v.size]
-    return [_read_as(source, g, starts, target) if g.doubt == UNTOLD or g.why == "name" else g for g in every]
+    every = [_read_as(source, g, starts, target) if g.doubt == UNTOLD or g.why == "name" else g for g in every]
+    series = {_stem(source.labels[g.column]): source.finite(g.column) for g in every if g.why == "readings"}
+    for i, g in enumerate(every):  # the others of a row of numbered ones, which jump, or hardly move
+        if g.doubt == UNTOLD and (one := series.get(_stem(label := source.labels[g.column]))) is not None:
+            values = source.finite(g.column)
+            alike = abs(np.median(values[:FIRST_ROWS]) - np.median(one[:FIRST_ROWS])) < ALIKE_K
+            if alike and UNNAMED[0] < values.min() <= values.max() < UNNAMED[1]:
+                every[i] = _placed(replace(g, quantity="temperature", unit="degC", doubt=BY_READINGS), label, target)
+    return every
+
+
+def _stem(label: str) -> tuple[str, ...]:
+    """What a name has in common with those that differ by their numbers; the name itself where it has none."""
+    words = tokens(label)
+    return tuple(w for w in words if not w.isdigit()) if any(map(str.isdigit, words)) else (label,)
 
 
 def _read_as(source: Source, g: Guess, starts: Sequence[float], target: Target) -> Guess:
@@ -318,7 +333,7 @@ def _read(source: Source, every: list[Guess], target: Target) -> list[Guess]:
     parts = [c for c in hot if not of_edge(roles_of(hot[c]))]
     still = {c for c in parts if np.nanmax(values := source.numbers(c)) == np.nanmin(values)}
     if still != {*parts}:
-        every = [g.without("never changes: a limit, or a dead sensor") if g.column in still else g for g in every]
+        every = [g.without(DEAD) if g.column in still else g for g in every]
     models = {c for c, label in hot.items() if MODELLED & {*tokens(PATH.split(label)[-1])}}
     if len(models) < len(hot):
         every = [Guess(g.column, "", doubt="modelled, not read") if g.column in models else g for g in every]
@@ -328,7 +343,8 @@ def _read(source: Source, every: list[Guess], target: Target) -> list[Guess]:
         if (label := hot.get(g.column)) and g.quantity and is_spoken(label, INSTRUMENT)
         if not (roles_of(label) or is_spoken(label, MACHINE))
     }
-    rest = [g for g in every if g.column in parts and g.quantity and g.column not in instruments]
+    moving = {*parts} - (still if still != {*parts} else set())
+    rest = [g for g in every if g.column in moving and g.quantity and g.column not in instruments]
     mean_of = {g.column: np.nanmean(in_memory(source, g)) for g in every if g.column in parts and g.quantity}
     coldest = min(mean_of, key=lambda c: mean_of[c], default="")
     edges = [b for b, role in target.boundaries.items() if role is Role.AMBIENT] if target.places else ["ambient"]
@@ -522,8 +538,7 @@ def _runs_back(source: Source, column: str) -> bool:
 
 def _counts_on(source: Source, column: str) -> bool:
     """Does it rise in every row?"""
-    values = source.numbers(column)
-    return bool((np.diff(values[np.isfinite(values)]) > 0).all())
+    return bool((np.diff(source.finite(column)) > 0).all())
 
 
 def _quantity(label: str, unit: str, target: Target) -> tuple[str, str, str]:
@@ -543,6 +558,8 @@ def _quantity(label: str, unit: str, target: Target) -> tuple[str, str, str]:
     if of_unit:
         unsure = len(of_unit) > 1 and not both
         doubt = f"or a {of_unit[1]}" if unsure else "" if both or unit != "%" else OF_WHAT
+        if not both and of_unit[0] in ("power", "torque") and by_name[:1] in (["power"], ["torque"]) and len(label) > 2:
+            doubt = f"by its name a {by_name[0]}"
         return (both or of_unit)[0], SUREST if both else "unit", doubt
     if (feeds := target.input_of(label, "")) and (quantity := target.inputs[feeds]) in (by_name or [quantity]):
         return quantity, f"name like the input {feeds}", ""
@@ -568,8 +585,7 @@ def _called_unit(label: str) -> str:
 
 def _by_values(source: Source, column: str) -> tuple[str, str, str]:
     """Smooth readings of a file without names that can hardly be anything but temperatures."""
-    values = source.numbers(column)
-    values = values[np.isfinite(values)]
+    values = source.finite(column)
     low, high = float(np.min(values)), float(np.max(values))
     smooth = np.max(np.abs(np.diff(values))) < 0.2 * max(high - low, 1e-9) + 1.0
     absolute = KELVIN[0] < float(np.median(values)) < KELVIN[1]

@@ -73,6 +73,11 @@ class Source(DataTable):
             self.values[column] = as_numbers(self.cells[column])
         return self.values[column]
 
+    def finite(self, column: str) -> Array:
+        """Its readings alone, row after row."""
+        values = self.numbers(column)
+        return values[np.isfinite(values)]
+
     def is_filled(self, column: str) -> bool:
         """Does it hold anything but ways to write that nothing was read?"""
         return _any(self.cells[column])
@@ -323,7 +328,9 @@ def _without_groups(labels: Mapping[str, str]) -> dict[str, str]:
     same = sum(1 for _ in itertools.takewhile(lambda level: len({*level}) == 1, zip(*paths.values(), strict=False)))
     last, count = Counter(path[-1] for path in paths.values()).most_common(1)[0]
     paths = {n: path[min(same, len(path) - 1) :] for n, path in paths.items()}
-    ending = last if count > len(paths) / 3 else ""
+    others = [p[:-1] for p in paths.values() if p[-1] != last and len(p) > 1]
+    channel = last[-1:].isdigit() and any([*group, last] in paths.values() for group in others)  # ai0, beside an ai1
+    ending = last if count > len(paths) / 3 and not channel else ""
     return {**labels, **{n: "/".join(p[:-1] if p[-1] == ending and len(p) > 1 else p) for n, p in paths.items()}}
 
 

@@ -9,9 +9,11 @@ import itertools
 import re
 from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, replace
+from shlex import quote
 
 import numpy as np
 
+from geom.arrays import Array
 from geom.description.names import is_plain
 from geom.description.roles import Role
 from geom.errors import InputError
@@ -33,7 +35,8 @@ from measured.headers.words import (
     roles_of,
     tokens,
 )
-from measured.importing.guess import AS_WINDING, AXES, OF_INSTRUMENT, ON_OFF, Array, Guess, in_memory, is_whole
+from measured.importing.guess import AS_WINDING, AXES, DEAD, OF_INSTRUMENT, ON_OFF, UNTOLD, Guess, in_memory, is_whole
+from measured.importing.relations import names_of
 from measured.importing.source import Source
 
 NOISE = 0.02  # of the largest: as far below zero a power meter may read when nothing flows
@@ -197,8 +200,11 @@ def starter(columns: Columns, name: str, span_s: float) -> FirstNetwork:
         lost = [g for s, g in columns if g.doubt == OF_INSTRUMENT or (g.doubt and roles_of(s.labels[g.column]))]
         lost.sort(key=lambda g: g.doubt != OF_INSTRUMENT)
         doubts = (f"; '{g.column}' is left out: {g.doubt}" for g in lost if not g.feeds)
-        what, right = "no column is a temperature of a machine", "a column with degC or K, or a name such as T_winding"
-        raise InputError(what + next(doubts, ""), files, right)
+        what = "no column is a temperature of a machine" + next(doubts, "")
+        right = "a column with degC or K, or a name such as T_winding"
+        if untold := [g.column for _, g in columns if g.doubt == UNTOLD]:
+            what, right = f"{what}; {names_of(untold, 3)}: {UNTOLD}", f"{right}; --place {quote(f'{untold[0]}=PLACE')}"
+        raise InputError(what, files, right)
     nodes = list(dict.fromkeys(place for *_, place in hot))
     boundaries = ["ambient", *(["coolant"] if any(place == "coolant" for *_, place in places) else [])]
     rises = {place: rise(source, g) for source, g, place in hot}
@@ -219,7 +225,7 @@ def place_of(g: Guess, label: str) -> str:
     """A node called after the column, or the boundary that its name means; "" for what is not a temperature."""
     if g.place and g.quantity == "temperature":
         return g.place  # as the user said
-    if g.quantity != "temperature" or is_setpoint(label):
+    if g.quantity != "temperature" or is_setpoint(label) or g.doubt == DEAD:
         return ""
     return next((BOUNDARIES.get(role, "") for role in roles_of(label)), "") or _name(label)
 

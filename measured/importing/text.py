@@ -41,6 +41,7 @@ INTERVAL = re.compile(
     r"(?:\s*[\[(](ms|sec|s|min|h)[\])])?[^\d\n]*?(\d+(?:[.,]\d+)?)[\s\",;]*(ms|sec|s|min|h)?\b"
 )
 TIMES = {"ms": 1e-3, "min": 60.0, "h": 3600.0}
+FEW_SHORT = 0.1  # of the rows: more that are short have empty ends
 DEGREE = 5  # letters: every second header has one, and no page but the right one makes it
 PAIR = r"[^\W\d]\w*=[^\s=]+(?: [^\s=\d][^\s=]*(?!\S))?"  # of a line that a program logged
 LOGGED = re.compile(rf"^(\d\S*[ T]\d\d:\S+|\d+:\d\d:\S+)(?=\s)[^=\n]*?((?:\s{PAIR})+)\s*$", re.MULTILINE)
@@ -125,9 +126,11 @@ def text_table(file: Path) -> tuple[Layout, Columns, list[str], float | None]:
         single = layout(split_cells(head, " "), str(file))
         plan, sign = (single, " ") if single.width == plan.width and any(single.names) else (plan, sign)
     interval_s = _interval("".join(itertools.islice(rows, plan.first)))
-    columns = _plain(file, rows, sign, plan)
+    least, short = _whole(split_cells(head, sign)[plan.first :] if rows is lines and sign in DELIMITERS else [])
+    notes += [f"{file.name}: {short}"] * bool(short)
+    columns = _plain(file, rows, sign, plan, least)
     if columns is None:
-        columns, long = _with_words(rows, sign, plan)
+        columns, long = _with_words(rows, sign, plan, least)
         notes += [f"{file.name}: {long} rows have more cells than the others; those cells are left out"] * bool(long)
         whole = in_thousands(columns)
         notes += [
@@ -229,23 +232,35 @@ def _interval(preamble: str) -> float | None:
     return step if step > 0 else None
 
 
-def _plain(file: Path, lines: Iterable[str], sign: str, plan: Layout) -> Columns | None:
+def _whole(rows: Sequence[Sequence[str]]) -> tuple[int, str]:
+    """The least cells of a row that is read, and a doubt: where few rows have fewer than the rest, a reading is
+    missing and those behind it stand under other names."""
+    widths = Counter(len(row) for row in rows if any(row))
+    usual = max(widths, key=lambda n: widths[n], default=0)
+    short = sum(count for n, count in widths.items() if n < usual)
+    if short > FEW_SHORT * widths.total():
+        return 0, ""
+    return usual * bool(short), f"{short} rows have fewer cells than the others: left out" * bool(short)
+
+
+def _plain(file: Path, lines: Iterable[str], sign: str, plan: Layout, least: int) -> Columns | None:
     """By the reader of plain CSV, which a table is once signs are replaced; None where it is not that simple."""
     if sign in BLANKS:
         return None
     try:
-        return Body(file, plan.width).columns(text.encode() for text in _with_commas(lines, sign, plan))
+        return Body(file, plan.width).columns(text.encode() for text in _with_commas(lines, sign, plan, least))
     except csv.Error:
         return None
 
 
-def _with_commas(lines: Iterable[str], sign: str, plan: Layout) -> Iterator[str]:
+def _with_commas(lines: Iterable[str], sign: str, plan: Layout, least: int) -> Iterator[str]:
     """Rows of readings with commas between them and points in them, many at once.
 
     csv.Error where there are quotation marks, or commas in some numbers and points in others.
     """
     again, commas, points = sign.join(plan.names), False, False  # a header and remarks may come again
-    rows = (line for line in itertools.islice(lines, plan.first, None) if line[0] != "#" and line.strip() != again)
+    body = (line for line in itertools.islice(lines, plan.first, None) if line[0] != "#" and line.strip() != again)
+    rows = (line for line in body if line.count(sign) + 1 >= least)
     while text := "".join(itertools.islice(rows, PIECE)):
         if sign != ",":
             commas, points = commas or "," in text, points or bool(BOTH_SIGNS.search(text))
@@ -254,12 +269,13 @@ def _with_commas(lines: Iterable[str], sign: str, plan: Layout) -> Iterator[str]
         yield text if sign == "," else text.replace(",", ".").replace(sign, ",")
 
 
-def _with_words(lines: Iterable[str], sign: str, plan: Layout) -> tuple[Columns, int]:
+def _with_words(lines: Iterable[str], sign: str, plan: Layout, least: int) -> tuple[Columns, int]:
     """Columns of cells, and how many rows have more than the header."""
     columns, long, first = [list[Any]() for _ in range(plan.width)], 0, plan.first
     for some in _whole_rows(lines):
         rows, first = split_cells(some, sign)[first:], 0
         body = [r for r in rows if any(r) and r[: plan.width] != [*plan.names] and not "".join(r[:1]).startswith("#")]
+        body = [row for row in body if len(row) >= least]
         long += sum(any(c.strip() for c in row[plan.width :]) for row in body)
         for column, cells in zip(columns, _raw(body, plan.width), strict=True):
             column += shared(cells)
@@ -358,7 +374,7 @@ def delimiter(lines: list[str]) -> str:
 
     Blanks stand within instants too, so they are it only where no other sign leaves readings nearly everywhere.
     """
-    sample = [line for line in lines if line.strip()]
+    sample = [line for line in lines if re.search(r"\d", line)]  # names have signs and blanks of their own
     scores, shares = {}, {}
     for sign in (*DELIMITERS, *reversed(BLANKS)):
         cells = [cell for row in split_cells(sample, sign) if len(row) > 1 for cell in row]

@@ -52,6 +52,10 @@ def test_parts_by_what_is_named_beside_the_stator_and_without_accents(name, role
     [
         ("shaft_speed_rad_s", "shaft_speed", "rad/s"),
         ("flow_l_per_min", "flow", "l/min"),
+        ("flow_litres_per_minute", "flow", "l/min"),
+        ("speed_metres_per_sec", "speed", "m/s"),
+        ("Flow (liters/minute)", "Flow", "l/min"),
+        ("Torque [N.mm]", "Torque", "mN*m"),
         ("mdot_kg_h", "mdot", "kg/h"),
         ("t_s", "t", "s"),
     ],

@@ -6,8 +6,9 @@ import numpy as np
 import pytest
 from logger_formats import signals
 
+from geom.errors import InputError
 from measured.importing.case_files import read_runs
-from measured.importing.guess import AS_TORQUE, INDOORS, OF_INSTRUMENT, OF_TESTED, guesses
+from measured.importing.guess import AS_TORQUE, BY_READINGS, DEAD, INDOORS, OF_INSTRUMENT, OF_TESTED, guesses
 from thermoscope.commands.test.new import first_model
 
 S = signals(5.0)
@@ -159,3 +160,100 @@ def test_heaters_of_several_zones_are_an_input_each(tmp_path, word):
     powers = [g.feeds for g in found.values() if g.quantity == "power"]
     assert len({*powers}) == 2
     assert all(name.endswith("_W") for name in powers)
+
+
+def test_a_sign_behind_the_last_name_and_readings_under_it(tmp_path):
+    found, _ = read(tmp_path, "t [s],T_coil [degC],I [A],\n" + body(T, W, J, 100 + T))
+    assert goes(found) == {"T_coil [degC]": "coil", "I [A]": "current_A"}
+
+
+def test_remarks_behind_a_row_that_is_not_the_first(tmp_path):
+    rows = body(T, W, J).splitlines()
+    rows[1] += ",remark,1,2,3"
+    found, source = read(tmp_path, "\n".join(["t [s],T_coil [degC],I [A]", *rows]) + "\n")
+    assert goes(found) == {"T_coil [degC]": "coil", "I [A]": "current_A"}
+    assert source.numbers("T_coil [degC]").size == T.size
+
+
+def test_few_rows_of_fewer_cells_are_left_out_and_said(tmp_path):
+    """The reading that is missing is not the last one: those behind it would stand under other names."""
+    rows = body(T, W, H, J).splitlines()
+    rows[40] = rows[40].rpartition(",")[0]
+    _, source = read(tmp_path, "\n".join(["t [s],T_coil [degC],T_frame [degC],I [A]", *rows]) + "\n")
+    assert source.notes[0].endswith(": 1 rows have fewer cells than the others: left out")
+    assert np.isfinite(source.numbers("I [A]")).all()
+    many = [row.rpartition(",")[0] if k % 2 else row for k, row in enumerate(rows)]  # its end is empty
+    _, source = read(tmp_path, "\n".join(["t [s],T_coil [degC],T_frame [degC],I [A]", *many]) + "\n")
+    assert source.numbers("T_coil [degC]").size == T.size
+
+
+def test_names_without_a_blank_over_instants_with_several(tmp_path):
+    names = ("motor_winding", "room_air", "supply_current")
+    stamps = [f"2025-11-12 17:{k // 60:02d}:{k % 60:02d}.000 UTC" for k in range(T.size)]
+    columns = zip(stamps, zip(W, A, J, strict=True), strict=True)
+    rows = [f"{stamp},{n},{v:.12f}\n" for stamp, row in columns for n, v in zip(names, row, strict=True)]
+    found, _ = read(tmp_path, "time,signal,value\n" + "".join(rows))
+    assert [*goes(found).values()] == ["motor-winding", "ambient", "current_A"]
+
+
+def test_channels_of_one_number_keep_it(tmp_path):
+    names = "t [s],Mod1/ai0,Mod1/ai1,Mod2/ai0,Mod2/ai1,I [A]\n"
+    found, _ = read(tmp_path, names + body(T, W, H, H + 1.0, W - 0.5, J))
+    read_as = [g for name, g in found.items() if "/" in name]
+    assert all(g.doubt.startswith(BY_READINGS) for g in read_as)
+    assert len({g.place for g in read_as}) == 4
+
+
+def test_numbered_columns_beside_one_that_reads_like_a_temperature(tmp_path):
+    """The others jump, or hardly move, as sensors that are dipped or lie in the room."""
+    dipped = np.where(np.arange(T.size) < 30, 22.1, 95.3)
+    found, _ = read(
+        tmp_path, "t [s],Sensor 1,Sensor 2,Sensor 3\n" + body(T, W, dipped, 22.0 + 0.1 * (np.arange(T.size) > 20))
+    )
+    assert {name: g.quantity for name, g in found.items()} == dict.fromkeys(found, "temperature")
+
+
+def test_a_device_beside_a_dead_sensor_is_what_is_tested(tmp_path):
+    found, _ = read(tmp_path, "t [s],temp_mos_1,temp_motor,I [A]\n" + body(T, W, 39.2 + 0 * T, J))
+    assert (found["temp_mos_1"].place, found["temp_mos_1"].doubt) == ("mos-1", OF_INSTRUMENT)
+    assert (found["temp_motor"].place, found["temp_motor"].doubt) == ("", DEAD)
+
+
+def test_a_power_in_a_torques_unit_is_doubted(tmp_path):
+    found, _ = read(tmp_path, "t [s],T_coil [degC],Torque [N.mm],Power [N.mm]\n" + body(T, W, J, 9 * J))
+    assert found["Torque [N.mm]"].doubt == ""
+    assert "a power" in found["Power [N.mm]"].doubt
+
+
+def test_milliseconds_of_a_day_are_no_seconds(tmp_path):
+    (tmp_path / "a.csv").write_text(
+        "ms_today,T_coil [degC]\n" + "".join(f"{76231191 + 91 * k},{v:.2f}\n" for k, v in enumerate(W))
+    )
+    [(_, clock)] = read_runs(tmp_path / "a.csv")
+    assert clock.end_s == pytest.approx(0.091 * (W.size - 1))
+
+
+def test_seconds_since_1970_without_a_name_are_a_clock_where_they_run_back(tmp_path):
+    times = np.tile(np.arange(T.size // 3), 3) * 3600 + 1692576000
+    rows = [f"{t},tank,Tank {k},{v:.2f}" for k, (t, v) in enumerate(zip(times.tolist(), W, strict=False))]
+    (tmp_path / "a.csv").write_text("\n".join(rows) + "\n")
+    with pytest.raises(InputError, match="the clock runs back"):
+        read_runs(tmp_path / "a.csv")
+
+
+def test_a_refusal_names_columns_that_nobody_understood(tmp_path):
+    with pytest.raises(InputError, match=r"'QX', 'QY': neither name nor unit.*--place QX=PLACE"):
+        read(tmp_path, "t [s],QX,QY\n" + body(T, 1000 + W, 900 * J))
+
+
+def test_means_and_limits_over_the_readings_are_left_out_and_said(tmp_path):
+    """A clock that runs back later is refused, as before."""
+    rows = body(T, W, J).splitlines()
+    text = ["t [s],T_coil [degC],I [A]", "0.1,25,3", "450,90,9", *rows]
+    (tmp_path / "a.csv").write_text("\n".join(text) + "\n")
+    [(source, clock)] = read_runs(tmp_path / "a.csv")
+    assert source.numbers("T_coil [degC]")[np.isfinite(clock.seconds)] == pytest.approx(W, rel=1e-3)
+    assert "2 rows over the clock's start are left out" in clock.doubt
+    (tmp_path / "a.csv").write_text("\n".join([text[0], *rows[:5], "0.1,25,3", *rows[5:]]) + "\n")
+    with pytest.raises(InputError, match="runs back"):
+        read_runs(tmp_path / "a.csv")
