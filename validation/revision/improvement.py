@@ -20,7 +20,7 @@ from validation.effects.sensors.reading_fault import SensorDelay
 from validation.inference.decide import SURE, is_same_event
 from validation.inference.result import Candidate, Diagnosis
 from validation.parameters.unknowns import with_model
-from validation.revision.revise import TOGETHER, Revision, add, calibrate
+from validation.revision.revise import TOGETHER, TRAINING, Revision, add, calibrate
 from validation.yardstick.suggestions import suggested_effects
 from validation.yardstick.words import NAMES, WORTH
 from validation.yardstick.yardstick import yardstick
@@ -168,7 +168,7 @@ def improve(
     A model that was never calibrated is calibrated first, if its own tests gain by that. What the diagnosis cannot
     tell is not offered. Whether the best plain model is reached then, or what stops it, is told at every end.
     """
-    stairs = [Step(errors(case), {})]
+    stairs, begin = [Step(errors(case), {})], case
     if not case.model.values:
         progress("calibrating")
         first = calibrate(case, progress=progress)
@@ -181,8 +181,22 @@ def improve(
         refused = list[Refusal]()
         step, document, why = _added(case, supervisor, diagnosis, stairs[-1].left_out_K, refused, progress)
         if step is None:
+            if whole := _fit_of_all(begin, case, stairs, progress):
+                case = _with_step(case, whole, supervisor, {}, stairs)
             return replace(ended(case, stairs, diagnosis, why), refused=refused)
         case = _with_step(case, step, supervisor, document, stairs)
+
+
+def _fit_of_all(begin: Case, case: Case, stairs: Sequence[Step], progress: Progress) -> Revision | None:
+    """Where all that came of it is a calibration that spoilt tests it had not seen: one on all tests a fit may use,
+    from where the first began, if it predicts what is left out. With an effect in the model all are fitted anyway."""
+    last = stairs[-1].revision
+    if last is None or last.action != "calibrate" or last.accepted:
+        return None
+    progress("calibrating on all tests")
+    from_start = replace(begin, model=replace(begin.model, revision=case.model.revision))
+    whole = calibrate(from_start, TRAINING, progress)
+    return whole if whole.accepted else None
 
 
 def ended(case: Case, stairs: Sequence[Step], diagnosis: Diagnosis, why: str) -> Improvement:

@@ -3,15 +3,19 @@
 import io
 import json
 from dataclasses import replace
+from types import SimpleNamespace
 
 import pytest
 from small_case import small_case
 
+from measured.case import Case, Model
 from thermoscope.case_folder.history import load_history
 from thermoscope.cli import whole_app
 from thermoscope.commands.explain import improve as command
 from validation.inference.result import Candidate, Diagnosis, Odds
-from validation.revision.improvement import offered, singletons
+from validation.parameters.unknowns import with_model
+from validation.revision import improvement
+from validation.revision.improvement import Step, offered, singletons
 from viz.pages.words import ending
 
 
@@ -132,3 +136,23 @@ def test_asking_takes_a_number_of_the_list(word, name, monkeypatch, capsys):
     monkeypatch.setattr("sys.stdin", io.StringIO(word))
     assert command.user_choice(found, offered(found)) == name
     assert capsys.readouterr().out == ""  # stdout belongs to the result
+
+
+@pytest.mark.parametrize(
+    ("action", "stands", "fitted"), [("calibrate", False, True), ("calibrate", True, False), ("add", False, False)]
+)
+def test_a_calibration_that_spoilt_unseen_tests_is_followed_by_one_of_all(action, stands, fitted, monkeypatch):
+    """From where the first one began, and only where nothing else came of it."""
+    asked = []
+
+    def fit(case, roles, progress):
+        asked.append((case.model.values, case.model.revision, roles))
+        return SimpleNamespace(accepted=True)
+
+    monkeypatch.setattr(improvement, "calibrate", fit)
+    begin = Case("one", Model(None), ())
+    last = Step(None, {}, SimpleNamespace(action=action, accepted=stands))
+    spoilt = with_model(begin, Model(None, values={"film": 9.0}, revision=1))
+    done = improvement._fit_of_all(begin, spoilt, [last], lambda message: None)
+    assert bool(done) == fitted
+    assert asked == [({}, 1, ("calibrate", "validate"))] * fitted
