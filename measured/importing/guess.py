@@ -347,8 +347,8 @@ def _read(source: Source, every: list[Guess], target: Target) -> list[Guess]:
         if (label := hot.get(g.column)) and g.quantity and is_spoken(label, INSTRUMENT)
         if not (roles_of(label) or is_spoken(label, MACHINE))
     }
-    driven = {w for g in every if g.feeds for w in tokens(source.labels[g.column])} & LOGGER  # "cpu" beside its load
-    instruments = {c for c in instruments if not driven & {*tokens(hot[c])}}
+    loads = {w for g in every if g.feeds for w in tokens(source.labels[g.column])} & LOGGER  # "cpu" beside its load
+    instruments = {c for c in instruments if not loads & {*tokens(hot[c])}}
     moving = {*parts} - (still if still != {*parts} else set())
     rest = [g for g in every if g.column in moving and g.quantity and g.column not in instruments]
     mean_of = {g.column: np.nanmean(in_memory(source, g)) for g in every if g.column in parts and g.quantity}
