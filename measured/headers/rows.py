@@ -208,6 +208,9 @@ def trimmed(row: Row) -> Row:
 def _readings(row: Row) -> bool:
     cells = [c for c in row if c is not None and str(c).strip()]
     good = sum(is_reading(c) for c in cells)
+    numbers = [number(c) for c in cells if number(c) == number(c)]
+    if FIRM <= len(numbers) == good < len(cells) and bool((np.diff(numbers) == 1).all()):
+        return False  # names of channels that count on, and others: 1, 2, 3, "Oven", "Time"
     return good > 0 and good >= LEAST * len(cells) and any(np.isfinite(number(c)) for c in cells)
 
 

@@ -68,6 +68,7 @@ LEAST = 3  # readings of a column
 ROOM_C = (-50.0, 120.0)  # degC at which machines are started, in the cold and in an oven
 ANGLE = re.compile(r"(?i)theta(?:[_ ]?[a-z]{0,2}|[_ ]?(?:mech|elec|el|rot))$")  # of a rotor, rather than a temperature
 OMEGA = re.compile(r"(?<=\.)w$|^w(?=$|_(?:m|r|mot|rotor|shaft|el)$)")  # beside a torque
+HEATER = re.compile(r"[QH](\d)")  # beside T of the same number
 LOAD = re.compile(r"T_?(?:load|last|mech|em|brake|shaft)")  # of a torque, where its readings are no temperature's
 AXES = ({"id", "iq"}, {"ialpha", "ibeta"})  # components whose squares add up to the current's
 OTHER_UNITS = {  # of loggers, that no table of a sheet lists: for pint
@@ -120,11 +121,14 @@ INDOORS = "a room beside the air outside: taken as a part"
 AS_FLOW = "the speed of a fan: taken as a flow, of which only the changes count"
 ON_OFF = "on and off, by its values alone: heat, cooling, or neither?"
 OF_READINGS = "made of readings that stand nowhere, by its name"
+OF_HEATER = "of a heater, by its letter and the number of a temperature"
+BOTH_WAYS = "below zero, as what heats and cools"
 VARIANT = "its name is that of another temperature and a word more: is it made of that?"
 AS_SPEED = "no speed was recorded: the frequency of the supply, as of one pole pair"
 OF_SUPPLY = "the frequency of the supply: the speed beside it says as much"
 LARGEST_HZ = 1000.0  # of a supply; inverters for motors switch faster
 QUICK = 0.6  # of the fastest: windings of the same machine
+FULL = 100.0  # of a fan or a pump without a unit, which stood still before
 PERCENT = 130.0  # of a load, at most
 MANUAL = "left out by hand"
 OF_USER = "the user"  # how a column was told that the user placed
@@ -343,6 +347,8 @@ def _read(source: Source, every: list[Guess], target: Target) -> list[Guess]:
         if (label := hot.get(g.column)) and g.quantity and is_spoken(label, INSTRUMENT)
         if not (roles_of(label) or is_spoken(label, MACHINE))
     }
+    loads = {w for g in every if g.feeds for w in tokens(source.labels[g.column])} & LOGGER  # "cpu" beside its load
+    instruments = {c for c in instruments if not loads & {*tokens(hot[c])}}
     moving = {*parts} - (still if still != {*parts} else set())
     rest = [g for g in every if g.column in moving and g.quantity and g.column not in instruments]
     mean_of = {g.column: np.nanmean(in_memory(source, g)) for g in every if g.column in parts and g.quantity}
@@ -389,6 +395,9 @@ def guess(source: Source, column: str, target: Target) -> Guess:
     label, unit_text = source.labels[column], source.units[column]
     if OMEGA.search(label) and any("torque" in quantities_of(other) for other in source.labels.values()):
         label = OMEGA.sub("omega", label)
+    heater = HEATER.fullmatch(label) if not unit_text else None
+    if heater and f"T{heater[1]}" in source.labels.values():
+        label = f"heater {heater[1]}"
     unit = unit_of(unit_text) or _called_unit(label)
     quantity, why, doubt = _by_values(source, column) if source.unnamed else _quantity(label, unit, target)
     if not quantity:
@@ -408,12 +417,18 @@ def guess(source: Source, column: str, target: Target) -> Guess:
     of_fan = quantity == "speed" and AIR in quantities_of(label) and not is_spoken(label, MACHINE)
     if of_fan and target.input_of(label, quantity) in ("", INPUTS["speed"]):
         quantity, unit, doubt = "flow_share", "%", AS_FLOW
+    if quantity in (AIR, LIQUID) and not unit and (np.nanmin(values), np.nanmax(values)) == (0.0, FULL):
+        quantity = "flow_share"
     unit, assumed = _unit(source, column, quantity, unit)
     if not unit_text and (match := FOREIGN.search(label) or ROUND.search(label)) and quantity != "temperature":
         if quantity == "speed" and not set(tokens(match[1])) & REMARK_WORDS:  # of a vehicle, or a counter
             return Guess(column, "", doubt=f"unit '{match[1]}' {UNKNOWN}: is it a speed of the machine?")
         assumed = f"unit '{match[1]}' {UNKNOWN}: {unit} assumed"
     base = Guess(column, quantity, unit, why=why, doubt="; ".join(filter(None, (doubt, assumed))))
+    if heater and quantity == "share":
+        base = replace(base, doubt="; ".join(filter(None, (OF_HEATER, assumed))))
+    if quantity == "share" and np.nanmin(values) < 0:
+        return Guess(column, "", doubt=BOTH_WAYS)
     if quantity not in SWITCHED and source.is_switch(column):
         return Guess(column, "", doubt=f"on and off, no {quantity.replace('_', ' ')}")
     codes = values[coded(values, FAR) & (np.abs(values) > LARGEST_THERMOCOUPLE)]

@@ -152,10 +152,14 @@ def of_machine(columns: Columns) -> Columns:
         return columns
     starts = [float(v[np.isfinite(v)][0]) for v in (in_memory(*part) for part in parts) if np.isfinite(v).any()]
     coldest, most = float(np.median(starts)) + COLD_K, STILL * max(rise(*part) for part in parts)
+    shares = [tokens(s.labels[g.column]) for s, g in columns if g.feeds and g.quantity == "share"]
+    of_heaters = {word for words in shares for word in words if word.isdigit()}
     means = dict[float, str]()
     for s, g in parts:
         values = in_memory(s, g)
         mean = float(np.nanmean(values))  # of what hardly changes and is as cold as the others were when they began
+        if {*filter(str.isdigit, tokens(s.labels[g.column]))} & of_heaters:
+            continue  # T2 beside Q2, its heater
         if not roles_of(s.labels[g.column]) and mean <= coldest and np.ptp(np.nanpercentile(values, MOST)) <= most:
             means.setdefault(mean, g.column)
     room = means[min(means)] if means else ""

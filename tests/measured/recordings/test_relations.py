@@ -12,6 +12,7 @@ from measured.importing.guess import guesses
 from measured.importing.relations import functional_relations, is_like_temperature, is_product, misfit
 from measured.importing.starter import heating
 from measured.importing.target import Target
+from thermoscope.commands.test.new import first_model
 
 RNG = np.random.default_rng(7)
 T = 5.0 * np.arange(1500)
@@ -195,3 +196,61 @@ def test_hours_and_minutes_as_written_by_hand_in_french(tmp_path):
     stamps = [f"{10 + k // 60}h{k % 60:02d}" for k in range(100)]
     one = record(tmp_path, {"heure": stamps, "T bobine [°C]": W1[:100], "I [A]": LOAD[:100]})
     assert one.clock.seconds == pytest.approx(60.0 * np.arange(100))
+
+
+def told(tmp_path, header, *columns):
+    """Column -> quantity, unit, and the place or the input it goes to."""
+    rows = "\n".join(",".join(f"{cell:g}" for cell in row) for row in zip(*columns, strict=True))
+    (tmp_path / "a.csv").write_text(f"{header}\n{rows}\n")
+    runs = read_runs(tmp_path / "a.csv")
+    target, [(source, clock)] = first_model(runs, {}).target, runs
+    return {g.column: (g.quantity, g.unit, g.place or g.feeds) for g in guesses(source, clock.columns, target)}
+
+
+K = np.arange(60.0)
+WARM = 20 + 0.5 * K + 0.1 * np.sin(K)
+LEVEL = 20.0 + 80 * (K > 30)
+
+
+def test_a_heater_may_have_a_letter_and_the_number_of_its_sensor(tmp_path):
+    """As in labs of control; its sensor is no room, even where it hardly warms."""
+    read = told(tmp_path, "t [s],T1,T2,Q1,Q2", K, WARM, 20 + 0.01 * np.sin(K), LEVEL, 0 * K)
+    assert read["Q1"] == ("share", "%", "share_percent")
+    assert read["Q2"][0] == "share"
+    assert read["T2"][2] != "ambient"
+    assert told(tmp_path, "t [s],T1,T2,Q3", K, WARM, WARM + np.cos(K), LEVEL)["Q3"] == ("", "", "")
+
+
+def test_what_heats_a_processor_is_how_much_it_is_used(tmp_path):
+    """Beside it the processor is what is tested; how full a memory is heats nothing."""
+    header = "t [s],cpu_temp,gpu_temp,cpu_load,gpu_util,mem_pct"
+    read = told(tmp_path, header, K, WARM, WARM + 5 + np.cos(K), LEVEL, LEVEL / 2 + K, 40 + np.sin(K))
+    assert {c for c, (quantity, _, to) in read.items() if quantity == "share" and to} == {"cpu_load", "gpu_util"}
+    assert read["cpu_temp"][:2] == ("temperature", "degC")
+    assert read["mem_pct"] == ("", "", "")
+
+
+@pytest.mark.parametrize(
+    ("name", "quantity"), [("Current speed", "speed"), ("PID output", "share"), ("controller output", "share")]
+)
+def test_current_is_also_a_word_for_now(tmp_path, name, quantity):
+    assert told(tmp_path, f"t [s],T_winding,{name}", K, WARM, LEVEL)[name][0] == quantity
+
+
+def test_what_heats_and_cools_is_no_share_of_heat(tmp_path):
+    """It is left out aloud, and the rest is read."""
+    read = told(tmp_path, "t [s],T_winding,duty", K, WARM, LEVEL - 50)
+    assert read["duty"] == ("", "", "")
+    assert read["T_winding"][2]
+
+
+@pytest.mark.parametrize(("most", "quantity", "unit"), [(100.0, "flow_share", "%"), (85.0, "air_flow", "m3/h")])
+def test_a_fan_that_goes_from_nothing_to_a_hundred_is_in_percent(tmp_path, most, quantity, unit):
+    read = told(tmp_path, "t [s],T_winding,fan", K, WARM, np.linspace(0, most, len(K)))
+    assert read["fan"][:2] == (quantity, unit)
+
+
+def test_names_may_begin_with_numbers_that_count_on(tmp_path):
+    columns = (WARM + np.cos(k * K) for k in range(1, 5))
+    read = told(tmp_path, "1,2,3,4,Oven,Time_(s)", *columns, WARM, 60 * K)
+    assert [*read] == ["1", "2", "3", "4", "Oven"]
