@@ -2,6 +2,7 @@
 
 from dataclasses import replace
 from functools import cache
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -12,6 +13,7 @@ from validation.effects import effect
 from validation.inference.evidence import calibrated_case, candidates, joined, scored
 from validation.inference.hypotheses import NOTHING, Cause, Together, condition_prior, law_prior
 from validation.inference.missing_heat import scan_heat
+from validation.inference.refit import wrong_throughout
 
 LASTING, FAULT = "convection.constant@body", "sensor.bias@core"
 CONDITION, LAW = "loss.constant@core in noon:600-1200s", "law@loss:heat|load>0.7"
@@ -89,3 +91,15 @@ def test_a_large_amplitude_is_weighed_whatever_its_tangent_says():
     assert any(a * u <= 0.0 for x, u in zip(e.effects, e.score.u, strict=True) for a in x.large)
     assert set(e.jumps) == large
     assert [n for n, x in zip(e.names, e.whole, strict=True) if np.isfinite(x)] == [n for n in e.names if n in large]
+
+
+@pytest.mark.parametrize(
+    ("name", "excluded"),
+    [("input.offset@flow_l_min", True), ("input.offset@flow_l_min in warm", False), ("convection@flange", False)],
+)
+def test_an_input_off_by_all_that_bounds_allow_in_every_test_explains_nothing(name, excluded):
+    """`add` refuses it, so no diagnosis may propose it; of one test, or of a film, the size is told."""
+    evidence = SimpleNamespace(p=2, effects=[effect(name)])
+    for at_bound in (True, False):
+        fit = SimpleNamespace(at_bound=np.array([True, False, at_bound]))
+        assert wrong_throughout(evidence, [0], fit) == (excluded and at_bound)
