@@ -126,7 +126,7 @@ def text_table(file: Path) -> tuple[Layout, Columns, list[str], float | None]:
         single = layout(split_cells(head, " "), str(file))
         plan, sign = (single, " ") if single.width == plan.width and any(single.names) else (plan, sign)
     interval_s = _interval("".join(itertools.islice(rows, plan.first)))
-    least, short = _whole(split_cells(head, sign)[plan.first :] if rows is lines and sign in DELIMITERS else [])
+    least, short = _whole(cells[plan.first :] if rows is lines and sign in DELIMITERS else [])
     notes += [f"{file.name}: {short}"] * bool(short)
     columns = _plain(file, rows, sign, plan, least)
     if columns is None:
