@@ -10,6 +10,8 @@ from datetime import datetime
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
 from geom.description.roles import Role
 from measured.headers.cells import EMPTY, TIMES, is_date, is_reading, is_unit, number, split_unit, unit_of
 from measured.headers.layout import MISSING
@@ -31,7 +33,7 @@ def side_by_side(
     Signals with times of their own hold from each of them to the next, as homes and controllers log what changes;
     temperatures of parts go on between them.
     """
-    varying = [j for j, cells in enumerate(columns) if len(set(cells)) > 1]
+    varying = [j for j, cells in enumerate(columns) if any(cell != cells[0] for cell in cells)]
     times = [j for j in varying if is_time(names[j]) or all(map(is_date, columns[j][:LEAST]))]
     times = times or [j for j in varying if unit_of(names[j]) in TIMES]  # beside a clock "min" is the least
     ids = [j for j, name in enumerate(names) if {"id", *SERIES} & {*tokens(name)} > {"id"}]  # sensor_id
@@ -125,6 +127,8 @@ def _text(cell: Any) -> str:
 
 def _is_key(cells: Sequence[Any], numbered: bool = False) -> bool:
     """Names of signals, that come again and again?"""
+    if isinstance(cells, np.ndarray):  # numbers, perhaps a million of them
+        return False
     counts = Counter(filter(None, map(_text, cells)))
     repeated = sum(counts.values()) >= LEAST * len(counts)
     return 1 < len(counts) <= MOST and repeated and (numbered or not any(map(is_reading, counts)))
