@@ -107,8 +107,8 @@ def with_model_form(
             links = [x for x in network.links if first.get(x.name) == p.name]
             films = [x for x in links if p.name in added or is_film(network, x)]
             losses = [x for x in network.sources if first.get(x.name) == p.name and x.kind not in EXACT_LOSSES]
-            declared = [x for x in links if x.kind == "link" and x.law.reads and p.name not in added]
-            gaps = [x for x in declared if not is_film(network, x)]  # between bodies
+            following = [x for x in links if x.kind == "link" and x.law.reads and p.name not in added]
+            gaps = [x for x in following if not is_film(network, x)]  # between bodies
             follow: list[Link | Source] = [*films, *gaps, *losses]
             laws = [x.law for x in follow]
             for name in dict.fromkeys(r for law in laws for r in law.reads if r in level):
