@@ -107,8 +107,7 @@ def with_model_form(
             links = [x for x in network.links if first.get(x.name) == p.name]
             films = [x for x in links if p.name in added or is_film(network, x)]
             losses = [x for x in network.sources if first.get(x.name) == p.name and x.kind not in EXACT_LOSSES]
-            following = [x for x in links if x.kind == "link" and x.law.reads and p.name not in added]
-            gaps = [x for x in following if not is_film(network, x)]  # between bodies
+            gaps = () if p.name in added else (x for x in links if is_gap(network, x))
             follow: list[Link | Source] = [*films, *gaps, *losses]
             laws = [x.law for x in follow]
             for name in dict.fromkeys(r for law in laws for r in law.reads if r in level):
@@ -154,6 +153,11 @@ def first_of(network: Network) -> dict[str, str]:
 
 def is_film(network: Network, link: Link) -> bool:
     return link.kind == "film" or (link.kind == "link" and bool(set(link.places) & set(network.boundaries)))
+
+
+def is_gap(network: Network, link: Link) -> bool:
+    """Is it declared between two bodies, and follows an input?"""
+    return link.kind == "link" and bool(link.law.reads) and not is_film(network, link)
 
 
 def _with_input(
