@@ -165,14 +165,12 @@ def improve(
 ) -> Improvement:
     """Diagnose and add until the model is adequate, the guide says no, or an addition is not accepted.
 
-    A model that was never calibrated is calibrated first, if its own tests gain by that. What the diagnosis cannot
+    A model that was never calibrated is calibrated first, if that gains. What the diagnosis cannot
     tell is not offered. Whether the best plain model is reached then, or what stops it, is told at every end.
     """
-    stairs, begin = [Step(errors(case), {})], case
-    if not case.model.values:
-        progress("calibrating")
-        first = calibrate(case, progress=progress)
-        case = _with_step(case, first, supervisor, {}, stairs) if first.worth_keeping else case
+    stairs = [Step(errors(case), {})]
+    if not case.model.values and (first := _first_fit(case, progress)):
+        case = _with_step(case, first, supervisor, {}, stairs)
     while True:
         diagnosis = diagnose(case, kinds=kinds, progress=progress)
         progress(shorten(f"step {len(stairs)}: {diagnosis.words}", LINE, placeholder=" ..."))
@@ -181,22 +179,20 @@ def improve(
         refused = list[Refusal]()
         step, document, why = _added(case, supervisor, diagnosis, stairs[-1].left_out_K, refused, progress)
         if step is None:
-            if whole := _fit_of_all(begin, case, stairs, progress):
-                case = _with_step(case, whole, supervisor, {}, stairs)
             return replace(ended(case, stairs, diagnosis, why), refused=refused)
         case = _with_step(case, step, supervisor, document, stairs)
 
 
-def _fit_of_all(begin: Case, case: Case, stairs: Sequence[Step], progress: Progress) -> Revision | None:
-    """Where all that came of it is a calibration that spoilt tests it had not seen: one on all tests a fit may use,
-    from where the first began, if it predicts what is left out. With an effect in the model all are fitted anyway."""
-    last = stairs[-1].revision
-    if last is None or last.action != "calibrate" or last.accepted:
-        return None
-    progress("calibrating on all tests")
-    from_start = replace(begin, model=replace(begin.model, revision=case.model.revision))
-    whole = calibrate(from_start, TRAINING, progress)
-    return whole if whole.accepted else None
+def _first_fit(case: Case, progress: Progress) -> Revision | None:
+    """A calibration that its own tests gain by; where it spoils others, one on all tests that a fit may use, if that
+    predicts what is left out. None where nothing gains."""
+    progress("calibrating")
+    first = calibrate(case, progress=progress)
+    if not first.accepted and any(t.role != "calibrate" for t in case.usable):
+        progress("calibrating on all tests")
+        whole = calibrate(case, TRAINING, progress)
+        first = whole if whole.accepted else first
+    return first if first.worth_keeping else None
 
 
 def ended(case: Case, stairs: Sequence[Step], diagnosis: Diagnosis, why: str) -> Improvement:
