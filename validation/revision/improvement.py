@@ -9,6 +9,7 @@ from textwrap import shorten
 
 import numpy as np
 
+from geom.errors import NoSolution
 from geom.text import counted
 from measured.case import Case
 from validation.calibration.calibrate import Progress, no_progress
@@ -80,10 +81,6 @@ class Refusal:
     effects: Sequence[str]
     what: str
     why: str
-
-    @classmethod
-    def of(cls, names: Sequence[str], step: Revision) -> Refusal:
-        return cls(tuple(names), _statements(names), step.why)
 
     def __str__(self) -> str:
         return f"not accepted: {self.what}, as {self.why}"
@@ -247,11 +244,9 @@ def _added(
                 break
             continue
         for names in ((name,), needed_together(diagnosis, name)):
-            if names and not any(_stands(case, one) for one in names):
-                step = add(case, names, progress)
-                if step.accepted:
-                    return step, evidence(diagnosis, next(c for c in choice if c.effect == name)), ""
-                refused.append(Refusal.of(names, step))
+            new = names and not any(_stands(case, one) for one in names)
+            if new and (step := _accepted(add, case, names, refused, progress)):
+                return step, evidence(diagnosis, next(c for c in choice if c.effect == name)), ""
     first = "" if declined or not refused else str(refused[0])
     further, document = further_step(case, supervisor, diagnosis, left_out, refused, progress)
     why = declined or first or diagnosis.words
@@ -301,11 +296,27 @@ def further_step(
     for names, document in {names: document for names, document in trials if names}.items():
         if frozenset(names) in before or any(_stands(case, one) for one in names):
             continue
-        step = _present(case, names, progress)
-        if step.accepted:
+        if step := _accepted(_present, case, names, refused, progress):
             return step, document
-        refused.append(Refusal.of(names, step))
     return None, {}
+
+
+def _accepted(
+    fit: Callable[[Case, Sequence[str], Progress], Revision],
+    case: Case,
+    names: Sequence[str],
+    refused: list[Refusal],
+    progress: Progress,
+) -> Revision | None:
+    """The step that brings some effects, if it stands; else None, and why is among what was refused."""
+    try:
+        step = fit(case, names, progress)
+    except NoSolution:
+        refused.append(Refusal(tuple(names), _statements(names), "the model runs away with it"))
+        return None
+    if not step.accepted:
+        refused.append(Refusal(tuple(names), _statements(names), step.why))
+    return step if step.accepted else None
 
 
 def _present(case: Case, names: Sequence[str], progress: Progress) -> Revision:
