@@ -17,7 +17,7 @@ from validation.calibration.calibrate import CachedSegments, Fit, minimise, no_p
 from validation.comparison.linearisation import Segment, segments
 from validation.effects.base import ReadingEffect
 from validation.effects.during import During
-from validation.effects.sensors.input_fault import InputFault
+from validation.effects.sensors.input_fault import is_misread
 from validation.inference.columns import exchange_columns
 from validation.inference.evidence import (
     ENOUGH,
@@ -163,17 +163,17 @@ def laplace(
     if not fits:
         return replace(h, log_bayes=IMPOSSIBLE, loud=IMPOSSIBLE)
     best = min(fits, key=lambda fit: fit.objective)
-    if wrong_throughout(evidence, h.members, best):
+    if is_unreadable(evidence, h.members, best):
         return replace(h, fit=best, log_bayes=IMPOSSIBLE, loud=IMPOSSIBLE)
     bayes = log_bayes(evidence, best, h.members)
     loud = evidence.loud.evidence(best, bayes) if evidence.loud else h.loud
     return replace(h, fit=best, log_bayes=bayes, loud=loud)
 
 
-def wrong_throughout(evidence: Evidence, members: Sequence[int], fit: Fit) -> bool:
-    """Would an input have to be further off in all tests than any is read?  Nobody could add that."""
-    at_bound = dict(zip(fitted_members(evidence, members), fit.at_bound[evidence.p :].tolist(), strict=True))
-    return any(far and isinstance(evidence.effects[k], InputFault) for k, far in at_bound.items())
+def is_unreadable(evidence: Evidence, members: Sequence[int], fit: Fit) -> bool:
+    """Would a room, an inlet or an input have to be further off than any is read? Nobody could add that."""
+    at_bound = zip(fitted_members(evidence, members), fit.at_bound[evidence.p :].tolist(), strict=True)
+    return any(far and is_misread(evidence.effects[k], evidence.parameters[k]) for k, far in at_bound)
 
 
 def fine_refit(evidence: Evidence, h: Weighed) -> Weighed:

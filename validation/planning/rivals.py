@@ -7,11 +7,13 @@ that one candidate foretells, explained by another that is fitted anew.
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, replace
 from itertools import combinations
 
 import numpy as np
 
+from geom.errors import NoSolution
 from lumped.model.multipliers import values_of
 from measured.case import Test
 from validation.calibration.calibrate import CachedSegments, Fit, minimise
@@ -101,13 +103,15 @@ def refitted_gains(evidence: Evidence, models: CompetingModels, promised: Iterab
     """The plans with what is left of the gaps that tangents promise, best gain per hour first.
 
     Tangents promise too much: they do not know how far the rivals can bend. Refits show how much for the first CHECKED
-    plans and, in each, the closest pair that might come apart: it is the gain of the plan. What was not refitted keeps
-    the largest share that any of those kept.
+    plans and, in each, the closest pair that might come apart: it is the gain of the plan. What was not refitted, and
+    where a rival runs away in a longer test than its own, keeps the largest share that any of those kept.
     """
     plans = sorted(promised, key=lambda p: -p.worth)
-    closest = [closest_pair(p.gaps) if i < CHECKED else [] for i, p in enumerate(plans)]
-    pairs = zip(plans, closest, strict=True)
-    separations = [{pair: predicted_deviance(evidence, models, p.tests, pair) for pair in some} for p, some in pairs]
+    separations: list[Gaps] = [{} for _ in plans]
+    for gaps, p in zip(separations[:CHECKED], plans, strict=False):
+        for pair in closest_pair(p.gaps):
+            with suppress(NoSolution):
+                gaps[pair] = predicted_deviance(evidence, models, p.tests, pair)
     shares = [g / p.gaps[pair] for gaps, p in zip(separations, plans, strict=True) for pair, g in gaps.items()]
     share = float(np.clip(max(shares, default=1.0), 0.0, 1.0))
     left = [

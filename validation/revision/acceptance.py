@@ -20,7 +20,7 @@ from measured.sensors.blocks import groups
 from validation.calibration.calibrate import ROUGH, CachedSegments, Fit, minimise
 from validation.comparison.linearisation import Segment, segments
 from validation.effects.registry import effect
-from validation.effects.sensors.input_fault import InputFault
+from validation.effects.sensors.input_fault import is_misread
 from validation.noise import FOLLOWED, Noise
 from validation.parameters.unknowns import Unknowns, sorted_unknowns, to_value
 
@@ -254,7 +254,7 @@ def bound_check(fit: Fit, name: str) -> Check:
     inside = f"{name} {value:.3g} lies between {p.low:.5g} and {p.high:.5g} {p.unit}"
     if fit.at_bound[k] and value == p.neutral:
         return Check("bounds", False, value, p.high, f"{name} is fitted to {value:.3g} {p.unit}: it is not there")
-    if fit.at_bound[k] and (p.targets[0][0].startswith("boundary:") or isinstance(effect(name), InputFault)):
+    if fit.at_bound[k] and is_misread(effect(name), p):
         words = f"{name} would have to be more than {value:.3g} {p.unit}: nothing is read so far off"
         return Check("bounds", False, value, p.high, words)
     at = f"{name} sticks to the bound of what is physical, {value:.3g} {p.unit}: something else may take part"

@@ -9,6 +9,7 @@ from textwrap import shorten
 
 import numpy as np
 
+from geom.errors import NoSolution
 from geom.text import counted
 from measured.case import Case
 from validation.calibration.calibrate import Progress, no_progress
@@ -80,10 +81,6 @@ class Refusal:
     effects: Sequence[str]
     what: str
     why: str
-
-    @classmethod
-    def of(cls, names: Sequence[str], step: Revision) -> Refusal:
-        return cls(tuple(names), _statements(names), step.why)
 
     def __str__(self) -> str:
         return f"not accepted: {self.what}, as {self.why}"
@@ -165,14 +162,12 @@ def improve(
 ) -> Improvement:
     """Diagnose and add until the model is adequate, the guide says no, or an addition is not accepted.
 
-    A model that was never calibrated is calibrated first, if its own tests gain by that. What the diagnosis cannot
+    A model that was never calibrated is calibrated first, if that gains. What the diagnosis cannot
     tell is not offered. Whether the best plain model is reached then, or what stops it, is told at every end.
     """
-    stairs, begin = [Step(errors(case), {})], case
-    if not case.model.values:
-        progress("calibrating")
-        first = calibrate(case, progress=progress)
-        case = _with_step(case, first, supervisor, {}, stairs) if first.worth_keeping else case
+    stairs = [Step(errors(case), {})]
+    if not case.model.values and (first := _first_fit(case, progress)):
+        case = _with_step(case, first, supervisor, {}, stairs)
     while True:
         diagnosis = diagnose(case, kinds=kinds, progress=progress)
         progress(shorten(f"step {len(stairs)}: {diagnosis.words}", LINE, placeholder=" ..."))
@@ -181,22 +176,20 @@ def improve(
         refused = list[Refusal]()
         step, document, why = _added(case, supervisor, diagnosis, stairs[-1].left_out_K, refused, progress)
         if step is None:
-            if whole := _fit_of_all(begin, case, stairs, progress):
-                case = _with_step(case, whole, supervisor, {}, stairs)
             return replace(ended(case, stairs, diagnosis, why), refused=refused)
         case = _with_step(case, step, supervisor, document, stairs)
 
 
-def _fit_of_all(begin: Case, case: Case, stairs: Sequence[Step], progress: Progress) -> Revision | None:
-    """Where all that came of it is a calibration that spoilt tests it had not seen: one on all tests a fit may use,
-    from where the first began, if it predicts what is left out. With an effect in the model all are fitted anyway."""
-    last = stairs[-1].revision
-    if last is None or last.action != "calibrate" or last.accepted:
-        return None
-    progress("calibrating on all tests")
-    from_start = replace(begin, model=replace(begin.model, revision=case.model.revision))
-    whole = calibrate(from_start, TRAINING, progress)
-    return whole if whole.accepted else None
+def _first_fit(case: Case, progress: Progress) -> Revision | None:
+    """A calibration that its own tests gain by; where it spoils others, one on all tests that a fit may use, if that
+    predicts what is left out. None where nothing gains."""
+    progress("calibrating")
+    first = calibrate(case, progress=progress)
+    if not first.accepted and any(t.role != "calibrate" for t in case.usable):
+        progress("calibrating on all tests")
+        whole = calibrate(case, TRAINING, progress)
+        first = whole if whole.accepted else first
+    return first if first.worth_keeping else None
 
 
 def ended(case: Case, stairs: Sequence[Step], diagnosis: Diagnosis, why: str) -> Improvement:
@@ -251,11 +244,9 @@ def _added(
                 break
             continue
         for names in ((name,), needed_together(diagnosis, name)):
-            if names and not any(_stands(case, one) for one in names):
-                step = add(case, names, progress)
-                if step.accepted:
-                    return step, evidence(diagnosis, next(c for c in choice if c.effect == name)), ""
-                refused.append(Refusal.of(names, step))
+            new = names and not any(_stands(case, one) for one in names)
+            if new and (step := _accepted(add, case, names, refused, progress)):
+                return step, evidence(diagnosis, next(c for c in choice if c.effect == name)), ""
     first = "" if declined or not refused else str(refused[0])
     further, document = further_step(case, supervisor, diagnosis, left_out, refused, progress)
     why = declined or first or diagnosis.words
@@ -305,11 +296,27 @@ def further_step(
     for names, document in {names: document for names, document in trials if names}.items():
         if frozenset(names) in before or any(_stands(case, one) for one in names):
             continue
-        step = _present(case, names, progress)
-        if step.accepted:
+        if step := _accepted(_present, case, names, refused, progress):
             return step, document
-        refused.append(Refusal.of(names, step))
     return None, {}
+
+
+def _accepted(
+    fit: Callable[[Case, Sequence[str], Progress], Revision],
+    case: Case,
+    names: Sequence[str],
+    refused: list[Refusal],
+    progress: Progress,
+) -> Revision | None:
+    """The step that brings some effects, if it stands; else None, and why is among what was refused."""
+    try:
+        step = fit(case, names, progress)
+    except NoSolution:
+        refused.append(Refusal(tuple(names), _statements(names), "the model runs away with it"))
+        return None
+    if not step.accepted:
+        refused.append(Refusal(tuple(names), _statements(names), step.why))
+    return step if step.accepted else None
 
 
 def _present(case: Case, names: Sequence[str], progress: Progress) -> Revision:

@@ -5,17 +5,17 @@ import json
 from dataclasses import replace
 from types import SimpleNamespace
 
+import numpy as np
 import pytest
 from small_case import small_case
 
-from measured.case import Case, Model
+from measured.case import Case, Model, Test
 from thermoscope.case_folder.history import load_history
 from thermoscope.cli import whole_app
 from thermoscope.commands.explain import improve as command
 from validation.inference.result import Candidate, Diagnosis, Odds
-from validation.parameters.unknowns import with_model
 from validation.revision import improvement
-from validation.revision.improvement import Step, offered, singletons
+from validation.revision.improvement import offered, singletons
 from viz.pages.words import ending
 
 
@@ -139,20 +139,25 @@ def test_asking_takes_a_number_of_the_list(word, name, monkeypatch, capsys):
 
 
 @pytest.mark.parametrize(
-    ("action", "stands", "fitted"), [("calibrate", False, True), ("calibrate", True, False), ("add", False, False)]
+    ("own", "all_tests", "other", "kept"),
+    [
+        ("accepted", "accepted", "validate", "own"),
+        ("worth keeping", "accepted", "validate", "all"),
+        ("worth keeping", "refused", "validate", "own"),
+        ("worth keeping", "accepted", "hold-out", "own"),
+        ("refused", "accepted", "validate", "all"),
+        ("refused", "refused", "validate", None),
+    ],
 )
-def test_a_calibration_that_spoilt_unseen_tests_is_followed_by_one_of_all(action, stands, fitted, monkeypatch):
-    """From where the first one began, and only where nothing else came of it."""
-    asked = []
-
-    def fit(case, roles, progress):
-        asked.append((case.model.values, case.model.revision, roles))
-        return SimpleNamespace(accepted=True)
+def test_a_calibration_that_spoils_others_gives_way_to_one_of_all_tests(own, all_tests, other, kept, monkeypatch):
+    def fit(case, roles=("calibrate",), progress=None):
+        of_all, what = len(roles) > 1, all_tests if len(roles) > 1 else own
+        stands = what == "accepted"
+        return SimpleNamespace(
+            of="all" if of_all else "own", accepted=stands, worth_keeping=stands or what == "worth keeping"
+        )
 
     monkeypatch.setattr(improvement, "calibrate", fit)
-    begin = Case("one", Model(None), ())
-    last = Step(None, {}, SimpleNamespace(action=action, accepted=stands))
-    spoilt = with_model(begin, Model(None, values={"film": 9.0}, revision=1))
-    done = improvement._fit_of_all(begin, spoilt, [last], lambda message: None)
-    assert bool(done) == fitted
-    assert asked == [({}, 1, ("calibrate", "validate"))] * fitted
+    tests = [Test(role, role, np.arange(2.0), {}, {}, ()) for role in ("calibrate", other)]
+    done = improvement._first_fit(Case("one", Model(None), tuple(tests)), lambda message: None)
+    assert (done.of if done else None) == kept

@@ -13,7 +13,7 @@ from validation.effects import effect
 from validation.inference.evidence import calibrated_case, candidates, joined, scored
 from validation.inference.hypotheses import NOTHING, Cause, Together, condition_prior, law_prior
 from validation.inference.missing_heat import scan_heat
-from validation.inference.refit import wrong_throughout
+from validation.inference.refit import is_unreadable
 
 LASTING, FAULT = "convection.constant@body", "sensor.bias@core"
 CONDITION, LAW = "loss.constant@core in noon:600-1200s", "law@loss:heat|load>0.7"
@@ -94,12 +94,18 @@ def test_a_large_amplitude_is_weighed_whatever_its_tangent_says():
 
 
 @pytest.mark.parametrize(
-    ("name", "excluded"),
-    [("input.offset@flow_l_min", True), ("input.offset@flow_l_min in warm", False), ("convection@flange", False)],
+    ("name", "target", "excluded"),
+    [
+        ("input.offset@flow_l_min", "film:x", True),
+        ("input.offset@flow_l_min in warm", "film:x", False),
+        ("ambient.offset@room", "boundary:room", True),
+        ("convection@flange", "convection@flange", False),
+    ],
 )
-def test_an_input_off_by_all_that_bounds_allow_in_every_test_explains_nothing(name, excluded):
-    """`add` refuses it, so no diagnosis may propose it; of one test, or of a film, the size is told."""
-    evidence = SimpleNamespace(p=2, effects=[effect(name)])
+def test_a_record_off_by_all_that_bounds_allow_explains_nothing(name, target, excluded):
+    """`add` refuses it, so no diagnosis may propose it; of one test's input, or of a film, the size is told."""
+    amplitude = SimpleNamespace(targets=((target, 1.0),))
+    evidence = SimpleNamespace(p=2, effects=[effect(name)], parameters=[amplitude])
     for at_bound in (True, False):
         fit = SimpleNamespace(at_bound=np.array([True, False, at_bound]))
-        assert wrong_throughout(evidence, [0], fit) == (excluded and at_bound)
+        assert is_unreadable(evidence, [0], fit) == (excluded and at_bound)

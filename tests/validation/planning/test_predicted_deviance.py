@@ -7,12 +7,14 @@ import numpy as np
 import pytest
 from playground import Truth, network, steps
 
+from geom.errors import NoSolution
 from measured.case import Case, Model
 from validation.comparison.linearisation import segments
 from validation.effects import effect
 from validation.inference.evidence import calibrated_case, scored
 from validation.inference.hypotheses import Weighed
 from validation.inference.refit import laplace
+from validation.planning import rivals
 from validation.planning.candidate_tests import CANDIDATE_TESTS
 from validation.planning.experiments import next_tests
 from validation.planning.rivals import (
@@ -115,3 +117,15 @@ def test_driven_it_decides():
     _, found = raced("same current at two speeds")
     right, wrong = found.fits
     assert deviance_difference(wrong, right) > GAP
+
+
+def test_a_rival_that_runs_away_in_a_planned_test_keeps_what_tangents_promise(monkeypatch):
+    """A diagnosis does not end there: the plan is told by its tangents."""
+
+    def run_away(*_):
+        raise NoSolution("more heat than its links carry away")
+
+    monkeypatch.setattr(rivals, "predicted_deviance", run_away)
+    plan = rivals.Plan("longer", 2.0, [], {(0, 1): 3.0 * GAP})
+    (told,) = rivals.refitted_gains(None, None, [plan])
+    assert told.gain == 3.0 * GAP

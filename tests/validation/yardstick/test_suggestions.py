@@ -7,6 +7,7 @@ from types import SimpleNamespace
 import pytest
 from two_bodies import bench
 
+from geom.errors import NoSolution
 from measured.case import AddedEffect
 from thermoscope.case_folder.stored_yardstick import yardstick_document
 from validation.calibration.calibrate import no_progress
@@ -14,6 +15,7 @@ from validation.comparison.compare import errors
 from validation.effects import effect
 from validation.inference.result import Candidate
 from validation.parameters.unknowns import scene_of
+from validation.revision import improvement
 from validation.revision.improvement import Refusal, Step, Supervisor, _added, ended, further_step, singletons
 from validation.yardstick.suggestions import suggested_effects
 from validation.yardstick.terms import Term
@@ -201,3 +203,22 @@ def test_the_sentence_counts_what_the_table_of_refusals_lists(case, monkeypatch)
     assert step is None
     assert len({r.what for r in refused}) == len(refused) > 2
     assert why == f"nothing explains it; tried and refused: {len(refused)} other explanations"
+
+
+def test_what_makes_the_model_run_away_is_refused_and_the_next_is_tried(case, monkeypatch):
+    poorer, fitted = without(case, ("body", "ambient")), improvement.add
+
+    def add(some, names, progress):
+        if tuple(names) == ("mass@core",):
+            raise NoSolution("more heat than its links carry away")
+        return fitted(some, names, progress)
+
+    monkeypatch.setattr(improvement, "add", add)
+    each = (("mass@core", 0.6), ("convection.constant@body", 0.3))
+    said = SimpleNamespace(
+        groups=(), odds=tuple(SimpleNamespace(effects=(n,), probability=p) for n, p in each), verdict="outside"
+    )
+    refused = []
+    step, _ = further_step(poorer, Supervisor(singletons, suggest=True), said, 9.0, refused, no_progress)
+    assert step.effect == "convection.constant@body"
+    assert [(r.effects, r.why) for r in refused] == [(("mass@core",), "the model runs away with it")]

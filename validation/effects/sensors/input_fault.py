@@ -7,7 +7,7 @@ from typing import ClassVar
 
 import numpy as np
 
-from lumped.model.network import Link, Network, Source
+from lumped.model.network import Link, Network, Parameter, Source
 from lumped.model.sites import standing_links, standing_sources
 from lumped.transfer.laws import Array, Inputs, Wrapped
 from lumped.transfer.ranges import within_silence
@@ -78,6 +78,11 @@ class InputFault(Effect):
         followers = [x for name, x in read(network) if name == self.place]
         copies = {f"{self.name}:{x.name}": (x, self.chord(x.law, self.place)) for x in followers}
         return with_parameter(copy_elements(network, copies), self.parameter(*copies, unit=self.unit_of(network)))
+
+
+def is_misread(one: Effect, amplitude: Parameter) -> bool:
+    """Does an effect say that a room, an inlet or an input was read wrong? At its bound nothing is read so far off."""
+    return isinstance(one, InputFault) or amplitude.targets[0][0].startswith("boundary:")
 
 
 def read(network: Network) -> list[tuple[str, Link | Source]]:

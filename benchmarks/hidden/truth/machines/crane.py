@@ -255,7 +255,7 @@ CRANE = Archetype(
         "shaft fan@shield.de": ("convection.fan@front", "convection.rotation@front"),
         "coupling heat@bearing.de": ("conduction.shaft@front bearing", "conduction.shaft@rotor"),
         "windage@cage": ("windage@cage", "windage@rotor"),
-        "friction@bearing.fan": ("bearing.friction@rear bearing", "loss.factor@rear grease"),
+        "friction@bearing.fan": ("bearing.friction@rear bearing", "loss.factor@loss:rear grease"),
         "ac copper@slot": ("copper.ac@winding",),
         "load loss@cage": ("loss.rotor.load@cage",),
         "pulses@cage": ("iron.pwm@cage", "iron.pwm@rotor"),

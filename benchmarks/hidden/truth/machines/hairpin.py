@@ -302,7 +302,7 @@ HAIRPIN = Archetype(
         "draught@rear": ("convection.constant@rear cover",),
         "load loss@magnets": ("loss.rotor.load@rotor",),
         "ac copper@layer.4": ("copper.ac@layer 4",),
-        "loop currents@layer.1": ("loss.winding@layer 1", "loss.factor@copper 1"),
+        "loop currents@layer.1": ("loss.winding@layer 1", "loss.factor@loss:copper 1"),
         "terminals@weld": ("coupling@weld side|housing", "coupling@housing|weld side"),
         "blocked nozzles@weld": ("nozzles@weld side",),
         "heat@front": ("loss.constant@front cover",),
