@@ -4,7 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
 
 from extras.export.compilers import compiler, here
 from thermoscope import InputError, MissingDependency, ThermoscopeError, plugin as th
@@ -15,6 +17,25 @@ if TYPE_CHECKING:
 WORKBOOKS = ("xlsx", "csv")
 MODELS = ("c", "fmu", "json", "matlab")
 VERSIONS = (2, 3)  # of FMI
+
+
+def export(
+    case: th.CaseArgument,
+    out: th.OutOption = None,
+    form: Annotated[str, typer.Option("--as", help="xlsx, csv: results; c, fmu, json, matlab; observer: C.")] = "xlsx",
+    limit: th.LimitOption = None,
+    fmi: Annotated[int, typer.Option(help="Version of an FMU: 2 or 3.")] = 2,
+    sensor: Annotated[list[str] | None, typer.Option(metavar="NAME", help="Of an observer; else all.")] = None,
+    json: th.JsonOption = None,
+) -> int:
+    """Results as a workbook or CSV files; or the model to run elsewhere: C99, FMU, JSON or MAT file."""
+    further = {} if form in (*WORKBOOKS, *MODELS) else th.plugins("exports")
+    check_form(form, fmi, sensor or (), further)
+    if form in further:
+        return int(further[form](case, out, th.read_limits(limit or ()), tuple(sensor or ()), json))
+    if form in MODELS:
+        return export_model(case, out, form, th.read_limits(limit or ()), fmi, json)
+    return export_workbook(case, out, form, json)
 
 
 def check_form(form: str, version: int, sensors: Sequence[str], further: Mapping[str, Any]) -> None:

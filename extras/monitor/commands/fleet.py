@@ -6,9 +6,10 @@ from collections.abc import Mapping, Sequence
 from contextlib import nullcontext
 from dataclasses import replace
 from pathlib import Path
-from typing import Any
+from typing import Annotated, Any
 
 import numpy as np
+import typer
 
 from extras.monitor.fleet import Population, population
 from extras.monitor.fleet.population import DIFFERS
@@ -17,6 +18,20 @@ from thermoscope import InputError, plugin as th
 
 WIDE = 50.0  # spread (%) of a parameter beyond which motors of one type seldom are; films and joints drift by a third
 FAR, LEAST_K = 3.0, 0.3  # times the usual error, and what that is at least: below it only noise is left
+
+
+def fleet(
+    case: th.CaseArgument,
+    recordings: Annotated[list[Path], typer.Argument(metavar="RECORDINGS...", help="UNIT@2026-03.csv, or folders.")],
+    like: Annotated[str | None, typer.Option(metavar="TEST", help="As in this test; else the first that fits.")] = None,
+    cluster: Annotated[str | None, typer.Option(metavar="ADDRESS", help="Of a Dask scheduler.")] = None,
+    json: th.JsonOption = None,
+) -> int:
+    """Motors that should be equal: what differs between them, what drifts over the months, which one stands out."""
+    with th.progress() as tell:
+        document = fleet_document(case, recordings, like, cluster, tell)
+    th.give(document, json, lambda: fleet_summary(document))
+    return 0
 
 
 @th.one_blas_thread

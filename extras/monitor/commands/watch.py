@@ -3,20 +3,58 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from contextlib import suppress
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any
+from typing import Annotated, Any
 
 import numpy as np
+import typer
 
 from extras.monitor.observer import Observer, Sample
 from extras.monitor.observer.learning import Design
 from extras.monitor.observer.process import Process
-from extras.monitor.rows.live_rows import PIPE, Rows
-from extras.monitor.rows.observing import joined, record_of
-from thermoscope import Record, plugin as th
+from extras.monitor.rows.live_rows import PIPE, TOGETHER, Rows, table_of
+from extras.monitor.rows.observing import chosen, designed, joined, record_of
+from thermoscope import InputError, Record, plugin as th
 
 MINUTE = 60.0
+
+
+def watch(
+    case: th.CaseArgument,
+    follow: Annotated[str, typer.Option("--follow", metavar="FILE|-", help="A recording, or - for rows from a pipe.")],
+    sensor: Annotated[list[str] | None, typer.Option(metavar="NAME", help="Use these sensors alone.")] = None,
+    like: Annotated[str | None, typer.Option(metavar="TEST", help="As in this test; else the first that fits.")] = None,
+    out: th.OutOption = None,
+    json: th.JsonOption = None,
+) -> int:
+    """Beside a running machine: all temperatures and missing heat from its sensors, and where the model fails."""
+    with th.progress() as tell:
+        folder = th.open_case(case, tell)
+        sheets = {e.name: th.load_sheet(e.sheet) for e in folder.settings.tests}
+        name, table, parts = table_of(follow, TOGETHER, sheets, folder.case.model.network, like)
+        channels = {c.name: c for t in folder.case.tests if t.name == name for c in t.channels}
+        here = [c for n, c in channels.items() if n in table.sensors()]
+        sensors = chosen(here, sensor or (), follow)
+        withheld = [c for c in here if c not in sensors]
+        session = Session(folder, designed(folder, tell), sensors, withheld, json != th.STDOUT)
+    with suppress(KeyboardInterrupt):
+        for part in parts:
+            session.take(table.rows(part))
+    if session.one is None:
+        raise InputError("holds no row", follow, "rows of numbers under the header")
+    file = th.write_whole(watched_file(folder, follow, out), session.csv())
+    document = {
+        "case": folder.case.name,
+        "revision": folder.case.model.revision,
+        "source": follow,
+        "like": name,
+        **session.document(),
+        "file": str(file),
+    }
+    th.give(document, json, lambda: watch_summary(document))
+    return 0
 
 
 def watched_file(folder: th.Folder, follow: str, out: Path | None) -> Path:
