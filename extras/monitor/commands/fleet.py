@@ -130,34 +130,24 @@ def fleet_summary(document: Mapping[str, Any]) -> th.Summary:
     names = dict.fromkeys(o["unit"] for o in outliers)
     odd = f"{len(names)} stand{'s' * (len(names) == 1)} out: {worst}" if outliers else "none stands out"
     sentence = f"{count} motors; {odd}."
-    rows = [
-        [
-            o["unit"],
-            th.value_words(o["parameter"]),
-            o["factor"],
-            *o["factor_ci95"],
-            [th.value_words(n) for n in o["instead"]],
-        ]
-        for o in outliers
-    ]
-    differ = [
-        [
-            th.value_words(p["name"]),
-            p["mean"],
-            p["spread_percent"],
-            p["differs"],
-            p.get("drift_percent_year"),
-            *(p.get("drift_ci95") or [None, None]),
-        ]
-        for p in sorted(document["parameters"], key=lambda p: -p["spread_percent"])
-    ]
     parts = [
-        th.Table("Outliers", ["motor", "parameter", "factor", "from", "to", "or else"], rows),
-        th.Table(
+        th.Table.of(
+            "Outliers",
+            outliers,
+            "motor=unit | parameter=words | factor | from=low | to=high | or else=others",
+            words=lambda o: th.value_words(o["parameter"]),
+            low=lambda o: o["factor_ci95"][0],
+            high=lambda o: o["factor_ci95"][1],
+            others=lambda o: [th.value_words(n) for n in o["instead"]],
+        ),
+        th.Table.of(
             "Parameters over the fleet",
-            ["parameter", "mean", "spread (%)", "differs", "drift (%/year)", "from", "to"],
-            differ,
-            keep=["mean", "spread (%)", "differs", "drift (%/year)"],
+            sorted(document["parameters"], key=lambda p: -p["spread_percent"]),
+            "parameter=words | *mean | *spread (%)=spread_percent | *differs | *drift (%/year)=drift_percent_year | "
+            "from=low | to=high",
+            words=lambda p: th.value_words(p["name"]),
+            low=lambda p: p["drift_ci95"][0] if "drift_ci95" in p else None,
+            high=lambda p: p["drift_ci95"][1] if "drift_ci95" in p else None,
         ),
     ]
     return th.Summary(" ".join(filter(None, [unequal_words(document), sentence])), parts, "--json FILE")

@@ -187,7 +187,7 @@ class Session:
                 {
                     "place": b,
                     "end_W": last.heat[i],
-                    "end_ci95": _interval(last.heat[i], last.heat_sd[i]),
+                    "end_ci95": [last.heat[i] + s * th.NORMAL_95 * last.heat_sd[i] for s in (-1.0, 1.0)],
                     "allowed_sd_W": noise.sd[i],
                 }
                 for i, b in enumerate(self.design.process.bodies)
@@ -207,10 +207,6 @@ class Session:
         }
 
 
-def _interval(value: float, sd: float) -> list[float]:
-    return [value - th.NORMAL_95 * sd, value + th.NORMAL_95 * sd]
-
-
 def _alarm_text(kind: str, where: str, amplitude: float, probability: float) -> str:
     if kind == "model":
         return f"the model fails at {where}: {amplitude:+.3g} W beyond doubt ({th.percent(probability)})"
@@ -224,23 +220,25 @@ def watch_summary(document: dict[str, Any]) -> th.Summary:
     sentence = (
         f"{document['duration_s'] / MINUTE:.0f} min watched; hottest: {hottest['place']}, {hottest['max_C']:.1f} degC."
     )
-    rows = [[p["place"], p["end_C"], p["end_ci95"][1] - p["end_C"], p["max_C"]] for p in document["places"]]
-    events = [
-        [
-            _alarm_text(
+    parts = [
+        th.Table.of(
+            "What was said",
+            document["events"],
+            "event | from (s)=from_s | to (s)=to_s",
+            event=lambda e: _alarm_text(
                 e["kind"], e["where"], float("nan") if e["amplitude"] is None else e["amplitude"], e["probability"]
             ),
-            e["from_s"],
-            e["to_s"],
-        ]
-        for e in document["events"]
-    ]
-    withheld = [[w["sensor"], w["rmse_K"], w["open_loop_rmse_K"]] for w in document["withheld"]]
-    parts = [
-        th.Table("What was said", ["event", "from (s)", "to (s)"], events),
-        th.Table("Sensors that were not given", ["sensor", "error (K)", "open loop (K)"], withheld),
-        th.Table(
-            "", ["place", "end (degC)", "95 % (+- K)", "largest (degC)"], rows, keep=["end (degC)", "95 % (+- K)"]
+        ),
+        th.Table.of(
+            "Sensors that were not given",
+            document["withheld"],
+            "sensor | error (K)=rmse_K | open loop (K)=open_loop_rmse_K",
+        ),
+        th.Table.of(
+            "",
+            document["places"],
+            "place | *end (degC)=end_C | *95 % (+- K)=half95 | largest (degC)=max_C",
+            half95=lambda p: p["end_ci95"][1] - p["end_C"],
         ),
     ]
     return th.Summary(sentence, [p for p in parts if p.rows], f"every sample in {document['file']}")
