@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -30,29 +30,21 @@ def export(
 ) -> int:
     """Results as a workbook or CSV files; or the model to run elsewhere: C99, FMU, JSON or MAT file."""
     further = {} if form in (*WORKBOOKS, *MODELS) else th.plugins("exports")
-    check_form(form, fmi, sensor or (), further)
+    if form not in (*WORKBOOKS, *MODELS, *further):
+        raise InputError(
+            f"'{form}' is not a form to export", "--as", th.suggestion(form, (*WORKBOOKS, *MODELS, *further))
+        )
+    if fmi not in VERSIONS:
+        raise InputError(f"FMI {fmi} is not written", "--fmi", "2 or 3")
+    if sensor and form not in further:
+        raise InputError(f"--as {form} has no sensors", "--sensor", "--as observer")
+    if form == "fmu":
+        compiler(here())
     if form in further:
         return int(further[form](case, out, th.read_limits(limit or ()), tuple(sensor or ()), json))
     if form in MODELS:
         return export_model(case, out, form, th.read_limits(limit or ()), fmi, json)
     return export_workbook(case, out, form, json)
-
-
-def check_form(form: str, version: int, sensors: Sequence[str], further: Mapping[str, Any]) -> None:
-    """Raises InputError for a form that nobody writes, and for options that another form has.
-
-    further : forms of other extras
-    """
-    if form not in (*WORKBOOKS, *MODELS, *further):
-        raise InputError(
-            f"'{form}' is not a form to export", "--as", th.suggestion(form, (*WORKBOOKS, *MODELS, *further))
-        )
-    if version not in VERSIONS:
-        raise InputError(f"FMI {version} is not written", "--fmi", "2 or 3")
-    if sensors and form not in further:
-        raise InputError(f"--as {form} has no sensors", "--sensor", "--as observer")
-    if form == "fmu":
-        compiler(here())
 
 
 def export_workbook(case: str, out: Path | None, form: str, target: str | None) -> int:
