@@ -146,8 +146,8 @@ def fleet_summary(document: Mapping[str, Any]) -> th.Summary:
             "parameter=words | *mean | *spread (%)=spread_percent | *differs | *drift (%/year)=drift_percent_year | "
             "from=low | to=high",
             words=lambda p: th.value_words(p["name"]),
-            low=lambda p: p["drift_ci95"][0] if "drift_ci95" in p else None,
-            high=lambda p: p["drift_ci95"][1] if "drift_ci95" in p else None,
+            low=lambda p: p.get("drift_ci95", [None, None])[0],
+            high=lambda p: p.get("drift_ci95", [None, None])[1],
         ),
     ]
     return th.Summary(" ".join(filter(None, [unequal_words(document), sentence])), parts, "--json FILE")
