@@ -12,12 +12,13 @@ import numpy as np
 import thermoscope as ts
 from thermoscope.geom.constants import SIGMA, ZERO_C
 from thermoscope.lumped.correlations.contacts import (
+    coaxial_discs,
     concentric_cylinders,
     cooper_mikic_yovanovich,
     groove_emissivity,
+    parallel_rectangles,
     radiation_film,
 )
-from thermoscope.lumped.correlations.views import coaxial_discs, parallel_rectangles
 
 HEAT, AREA, ROOM = 400.0, 0.01, 20.0  # W, m2, degC
 

@@ -70,6 +70,7 @@ def family_page(family: Family, picture: str) -> str:
     shipped = ", ".join(f"`{name}`" for name in library() if load_machine(name).family == family.name)
     machines = f" Machines in the library: {shipped}." if shipped else ""
     free, measured = (_rows(family, scaled) for scaled in (False, True))
+    rows = zip(("exact", "assumed", "held against"), TRUST[family.name], strict=True)
     return "\n".join(
         [
             f"# Family `{family.name}`",
@@ -86,16 +87,13 @@ def family_page(family: Family, picture: str) -> str:
             *_MEASURED,
             table(["ratio", "default", "allowed", "or", "default", "allowed", "meaning"], measured),
             *_outlines(family),
-            *_trust(family),
+            "",
+            "## How far to trust it",
+            "",
+            table(["", "what"], rows),
             "",
         ]
     )
-
-
-def _trust(family: Family) -> list[str]:
-    """How far to trust a machine of this kind."""
-    rows = zip(("exact", "assumed", "held against"), TRUST[family.name], strict=True)
-    return ["", "## How far to trust it", "", table(["", "what"], rows)]
 
 
 def _outlines(family: Family) -> list[str]:

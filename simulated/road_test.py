@@ -5,7 +5,7 @@ from __future__ import annotations
 import argparse
 import sys
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from concurrent.futures import ProcessPoolExecutor
 from dataclasses import replace
 from pathlib import Path
@@ -49,18 +49,13 @@ def simulate(test: str, hidden: bool, quick: bool) -> tuple[Result, float]:
     """One test and the seconds it took. Everything follows from the seed, so each process builds its own motor."""
     draws, begun = Draws(SEED), time.perf_counter()
     plant = motor(draws, QUICK if quick else FULL, hidden)
-    result = run(
-        plant, drive.drives(draws)[test], sensors.install(plant.body, draws), 60 if quick else 10, _progress(test)
-    )
-    return result, time.perf_counter() - begun
 
-
-def _progress(test: str) -> Callable[[int], None]:
     def tell(second: int) -> None:
         if second % 600 == 0:
             print(f"{test}: {second // 60} min", file=sys.stderr, flush=True)
 
-    return tell
+    result = run(plant, drive.drives(draws)[test], sensors.install(plant.body, draws), 60 if quick else 10, tell)
+    return result, time.perf_counter() - begun
 
 
 def make(out: Path, truth: Path, quick: bool, tests: Sequence[str]) -> None:

@@ -47,12 +47,14 @@ class Finding:
 
 def findings(browsers: Sequence[str] = BROWSERS) -> list[Finding]:
     """Everything that is looked for, in the order of importance.  browsers : commands, any of which will do"""
+    from viz.rendering.gl import COMMAND
+
     return [
         *(
             _finding(f"[{e.name}]", partial(_installed, e.name), e.needed_for, False, e.install)
             for e in EXTRAS.values()
         ),
-        _finding("off-screen OpenGL", _gl, "pictures (render, report, demo)", True, _gl_fix()),
+        _finding("off-screen OpenGL", _gl, "pictures (render, report, demo)", True, COMMAND),
         _finding("rerun viewer", _rerun, "opening .rrd recordings", False, "uv pip install rerun-sdk"),
         _finding("Vulkan driver", _vulkan, "screenshots from the rerun viewer without a display", False, VULKAN),
         _finding("Chromium", partial(_browser, browsers), "screenshots of the HTML report", False, CHROMIUM),
@@ -78,12 +80,6 @@ def _gl() -> bool:
     from viz.rendering.gl import off_screen_window
 
     return off_screen_window() is not None
-
-
-def _gl_fix() -> str:
-    from viz.rendering.gl import COMMAND
-
-    return COMMAND
 
 
 def _rerun() -> bool:

@@ -7,15 +7,15 @@ import io
 import os
 import signal
 import sys
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import dataclass
 from functools import cache
 from importlib import import_module
-from importlib.machinery import SourceFileLoader
+from importlib.util import find_spec
 from inspect import cleandoc
 from keyword import iskeyword
-from pathlib import Path
 from types import CodeType
-from typing import Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any, cast
 
 import typer
 
@@ -26,6 +26,9 @@ from thermoscope.console.summary import LINES, limited_lines
 from thermoscope.console.terminal import ranges_as_notes, versions
 from thermoscope.files import STOPPED, message_of, printable
 from thermoscope.parts import NEEDS, explained, required
+
+if TYPE_CHECKING:
+    from importlib.abc import InspectLoader
 
 UsageError: Any = typer.BadParameter.__base__  # of click, wherever this version of typer keeps it
 ANYWHERE = ("--all", "--debug")  # options of every command
@@ -38,9 +41,23 @@ CODES = """Exit codes: 0 done; 1 the model disagrees, or nothing was found; 2 th
 # mostly wait for each other. A build of `pmsm-m1` takes 160 s of one thread, and 420 s of two.
 BLAS_THREADS = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS")
 
-# Group -> what it is for, and its commands: MODULE, or MODULE.COMMAND where they have not one name. Each command is a
-# function; its signature and docstring are what the command line takes and says of it.
-GROUPS = {
+
+@dataclass(frozen=True)
+class CommandGroup:
+    """Commands of one group, of the core or of an extra: each a function, loaded when it is asked for.
+
+    Its signature and docstring are what the command line takes and says of it.
+    name : word before the commands;  package : of their modules;  help : what they are for, "" where another says it
+    commands : MODULE, or MODULE.COMMAND where they have not one name
+    """
+
+    name: str
+    package: str
+    commands: str
+    help: str = ""
+
+
+CORE = {
     "": ("", "demo,check"),
     "model": (
         "Machines, networks, and the model as it stands.",
@@ -51,36 +68,40 @@ GROUPS = {
     "show": ("Report, pictures, the workbench in the browser.", "pages.report,pages.render,picture,film,viewer,plan"),
     "use": ("Run the model, and take it elsewhere.", "simulate"),
 }
+GROUPS = [
+    CommandGroup(n, f"thermoscope.commands.{n}" if n else "thermoscope", c, words) for n, (words, c) in CORE.items()
+]
 
 
-def home_modules() -> dict[tuple[str, str], str]:
+def home_modules(groups: Iterable[CommandGroup] = GROUPS) -> dict[tuple[str, str], str]:
     """(group, command) -> the module that has it."""
     out = {}
-    for group, (_, words) in GROUPS.items():
-        package = f"thermoscope.commands.{group}." if group else "thermoscope."
-        for module, _, name in (word.partition(".") for word in words.split(",")):
-            out[group, name or module] = package + module
+    for group in groups:
+        for module, _, name in (word.partition(".") for word in group.commands.split(",")):
+            out[group.name, name or module] = f"{group.package}.{module}"
     return out
 
 
-def command_line(requested: Callable[[str, str], bool], extras: Sequence[typer.Typer] = ()) -> typer.Typer:
+def command_line(
+    requested: Callable[[str, str], bool], extras: Sequence[CommandGroup | typer.Typer] = ()
+) -> typer.Typer:
     """The program in which the requested commands (group, name) can run; of the others it knows the help alone.
 
-    extras : apps of further commands; the name of each is its group, a new one brings its help
+    extras : groups of further commands, or apps of typer, which are loaded already; a new group brings its help
     """
     app = typer.Typer(help=ABOUT, epilog=CODES, add_completion=False, pretty_exceptions_enable=False, **PLAIN)
     app.callback(help=ABOUT)(_of_every_command)
-    parts = {"": app}
-    groups = [(group, words) for group, (words, _) in GROUPS.items()]
-    for group, words in [*groups, *((str(e.info.name), str(e.info.help)) for e in extras)]:
-        if group not in parts:
-            parts[group] = typer.Typer(help=words, **PLAIN)
-            app.add_typer(parts[group], name=group, short_help=words)
-    for (group, name), module in home_modules().items():
-        function = f"{name}_" if iskeyword(name) else name
+    parts, apps = {"": app}, [e for e in extras if isinstance(e, typer.Typer)]
+    groups = [*GROUPS, *(e for e in extras if isinstance(e, CommandGroup))]
+    for name, words in [*((g.name, g.help) for g in groups), *((str(a.info.name), str(a.info.help)) for a in apps)]:
+        if name not in parts:
+            parts[name] = typer.Typer(help=words, **PLAIN)
+            app.add_typer(parts[name], name=name, short_help=words)
+    for (group, name), module in home_modules(groups).items():
+        function = f"{name}_" if iskeyword(name) else name.replace("-", "_")
         run = getattr(import_module(module), function) if requested(group, name) else _help_alone(module, function)
         parts[group].command(name, short_help=run.__doc__)(run)  # else the list of commands cuts it
-    for extra in extras:
+    for extra in apps:
         for one in extra.registered_commands:
             assert one.callback is not None
             name, words = str(one.name or one.callback.__name__), str(one.callback.__doc__)
@@ -104,8 +125,9 @@ def _of_every_command(
 
 def _help_alone(module: str, name: str) -> Callable[[], None]:
     """A stand-in that says what the command says of itself; the module is read, not loaded."""
-    file = Path(__file__).parents[1].joinpath(*module.split(".")).with_suffix(".py")
-    program = SourceFileLoader(module, str(file)).get_code(module)  # its bytecode, where that was kept
+    spec = find_spec(module)
+    assert spec is not None
+    program = cast("InspectLoader", spec.loader).get_code(module)  # its bytecode, where that was kept
     assert program is not None
     function = next(c for c in program.co_consts if isinstance(c, CodeType) and c.co_name == name)
 

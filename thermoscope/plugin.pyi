@@ -1,14 +1,13 @@
 # The face for extras and plugins: what each name is, room by room from below.
 from geom.arrays import Array as Array, Ints as Ints
 from geom.constants import ALPHA_CU as ALPHA_CU, L_MIN as L_MIN, M3_H as M3_H, NORMAL_95 as NORMAL_95, RPM as RPM
-from geom.description.roles import Identity as Identity
 from geom.description.machine import Machine as MachineDescription
 from geom.description.materials import winding_conductivity as winding_conductivity
 from geom.description.names import cut_short as cut_short, file_stem as file_stem
 from geom.description.parameters import Parameter as GeometryParameter, UNITS as GEOMETRY_UNITS
 from geom.description.part import Part as Part, Prism as Prism, Rod as Rod
 from geom.description.profile import ArcGrid as ArcGrid, loop_length as loop_length
-from geom.description.roles import Role as Role
+from geom.description.roles import Identity as Identity, Role as Role
 from geom.description.toml_file import read_toml as read_toml
 from geom.disk_cache import recalled as recalled, store as store
 from geom.errors import NoSolution as NoSolution
@@ -106,13 +105,13 @@ from lumped.schemas.bounds import COLDEST as COLDEST, HOTTEST as HOTTEST, UNITS 
 from lumped.schemas.reader import Table as TomlTable, suggestion as suggestion
 from lumped.sources.layer_loss import LayerLoss as LayerLoss
 from lumped.sources.loss_map import MapLoss as MapLoss
-from lumped.sources.loss_measured import MeasuredLoss as MeasuredLoss
 from lumped.sources.loss_laws import (
     BrushLoss as BrushLoss,
     CopperLoss as CopperLoss,
     EDDY as EDDY,
     EddyLoss as EddyLoss,
     IronLoss as IronLoss,
+    MeasuredLoss as MeasuredLoss,
     PowerLoss as PowerLoss,
     declared_name as declared_name,
 )
@@ -279,6 +278,7 @@ from viz.rendering.scale import rounded as rounded
 from viz.rendering.scene import NOTE as NOTE, Room as Room, TITLE as TITLE, View as View
 from viz.viewer.packing import packed_integers as packed_integers, packed_numbers as packed_numbers
 from viz.viewer.page import render as render, script as script
+from thermoscope.cli import CommandGroup as CommandGroup
 from thermoscope.bands import (
     predicted_bands as predicted_bands,
     posterior_of as posterior_of,
@@ -320,7 +320,6 @@ from thermoscope.commands.open_case import (
     open_case as open_case,
     open_case_for_writing as open_case_for_writing,
 )
-from thermoscope.commands.pairs import read_limits as read_limits, read_pairs as read_pairs
 from thermoscope.commands.show.pages import NO_PDF as NO_PDF, provenance as provenance, write_page as write_page
 from thermoscope.commands.show.picture import Subject as Subject
 from thermoscope.commands.show.viewer import stored_documents as stored_documents, viewer_documents as viewer_documents
@@ -338,6 +337,8 @@ from thermoscope.console.options import (
     Limit as LimitOption,
     Out as OutOption,
     Sure as BandsOption,
+    read_limits as read_limits,
+    read_pairs as read_pairs,
 )
 from thermoscope.console.progress_bar import Progress as Progress, progress as progress
 from thermoscope.console.terminal import STDOUT as STDOUT, give as give, notes as notes, plain as plain, say as say

@@ -116,13 +116,6 @@ def runs_table(rows: Sequence[Row]) -> str:
     return "\n".join([found, "", f"{verdict(rows)}.", *([f"Shorter: {', '.join(short)}."] if short else [])])
 
 
-def stages_of(name: str, cache: Path) -> dict[str, float]:
-    """What the stages of a command took in a cache that it alone has used (s)."""
-    file = cache / "stages.json"
-    document = json.loads(file.read_text(encoding="utf-8")) if file.exists() else {}
-    return dict(document.get(f"{COMMANDS[name]} {name} 0", {}))
-
-
 def usual(stages: Sequence[dict[str, float]]) -> dict[str, float]:
     """The median of each stage over the cases that have it (s), in the order in which the longest list has them.
 
@@ -169,7 +162,9 @@ def main() -> None:
         rows = [row for row in rows if (row.command, row.case) != (command, case)]
         with tempfile.TemporaryDirectory() as cache:
             rows.append(measured(command, case, "first", cache))
-            took.setdefault(command, []).append(stages_of(command, Path(cache)))
+            file = Path(cache) / "stages.json"
+            document = json.loads(file.read_text(encoding="utf-8")) if file.exists() else {}
+            took.setdefault(command, []).append(dict(document.get(f"{COMMANDS[command]} {command} 0", {})))
             rows.append(measured(command, case, "second", cache))
         for row in rows[-2:]:
             told = "short" if row.ratio is None else f"{row.ratio:5.2f} of what was left, stood {row.stood_s:.0f} s"

@@ -201,7 +201,10 @@ def hidden_in(kind: Archetype, label: Label) -> Change:
     if label.group == "condition":
         return _passing(kind, label)
     if label.group == "tense":
-        return _wrong_priors(kind, label.seed)
+        # Three drawn parameters two deviations from what the user believes.
+        rng = np.random.default_rng([label.seed, 8])
+        keys = rng.choice(list(kind.tense), min(3, len(kind.tense)), replace=False)
+        return Change({str(k): float(np.exp(2.0 * kind.tense[str(k)] * rng.choice([-1, 1]))) for k in keys})
     source = {"fault": kind.faults, "foreign": kind.foreign, "absorbed": kind.absorbed}.get(label.group)
     return source[label.truth[0]](label.seed) if source else NOTHING
 
@@ -218,13 +221,6 @@ def edits_of(label: Label) -> tuple[Edit, ...]:
     """What the user's network says instead, where he forgot something."""
     table = {h.name: h for h in KINDS[label.machine].missing}
     return tuple(e for name in label.truth if name in table for e in table[name].declared)
-
-
-def _wrong_priors(kind: Archetype, seed: int) -> Change:
-    """Three drawn parameters two deviations from what the user believes."""
-    rng = np.random.default_rng([seed, 8])
-    keys = rng.choice(list(kind.tense), min(3, len(kind.tense)), replace=False)
-    return Change({str(k): float(np.exp(2.0 * kind.tense[str(k)] * rng.choice([-1, 1]))) for k in keys})
 
 
 def records_of(label: Label) -> tuple[Record, ...]:

@@ -7,7 +7,7 @@ machines of their own by `hidden_effects.py --sizes` and kept in sizes.json: a c
 from __future__ import annotations
 
 import json
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from functools import cache
 from pathlib import Path
 
@@ -100,4 +100,13 @@ def write(kinds: Sequence[str]) -> None:
     """Measure some kinds anew and leave the others as they are."""
     for name in kinds:
         table = {**(json.loads(FILE.read_text()) if FILE.exists() else {}), name: measure(KINDS[name])}
-        FILE.write_text(json.dumps(table, indent=1, sort_keys=True) + "\n")
+        FILE.write_text(as_text(table))
+
+
+def as_text(table: Mapping[str, Mapping[str, dict]]) -> str:
+    """JSON with a line for each thing that can be hidden."""
+    kinds = []
+    for kind, rows in sorted(table.items()):
+        lines = (f"  {json.dumps(name)}: {json.dumps(row, sort_keys=True)}" for name, row in sorted(rows.items()))
+        kinds.append(f" {json.dumps(kind)}: {{\n" + ",\n".join(lines) + "\n }")
+    return "{\n" + ",\n".join(kinds) + "\n}\n"

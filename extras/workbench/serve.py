@@ -86,7 +86,8 @@ async def _serve(app: web.Application, access: AccessControl, port: int, ready: 
     await runner.setup()
     try:
         await _listening(runner, access.host, port)
-        ready(_address(access, runner.addresses[0][1]))
+        name = f"[{access.host}]" if ":" in access.host else access.host
+        ready(f"http://{name}:{runner.addresses[0][1]}/" + (f"?token={access.token}" if access.token else ""))
         await end.wait()
     finally:
         await runner.cleanup()
@@ -101,8 +102,3 @@ async def _listening(runner: web.AppRunner, host: str, port: int) -> None:
         raise InputError(
             f"cannot listen there: {fault.strerror or fault}", f"--host {host} --port {port}", right
         ) from None
-
-
-def _address(access: AccessControl, port: int) -> str:
-    name = f"[{access.host}]" if ":" in access.host else access.host
-    return f"http://{name}:{port}/" + (f"?token={access.token}" if access.token else "")

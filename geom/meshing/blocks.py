@@ -91,17 +91,13 @@ def find_columns(cut: Partition, blocks: Sequence[Block]) -> list[Column]:
     for index, block in enumerate(blocks):
         over[block.faces, block.first : block.last + 1] = index
     for face, row in enumerate(over):
-        for first, last in _runs(row):
+        # First and last index of each stretch of a row without -1.
+        change = np.flatnonzero(np.diff(np.concatenate([[False], row >= 0, [False]]).astype(int)))
+        for first, last in [(int(a), int(b) - 1) for a, b in change.reshape(-1, 2)]:
             stack = tuple(dict.fromkeys(row[first : last + 1].tolist()))
             labels = tuple(int(cut.labels[face, blocks[index].first]) for index in stack)
             stacks[stack, labels, _label(cut, face, first - 1), _label(cut, face, last + 1)].append(face)
     return [Column(piece, *key) for key, faces in stacks.items() for piece in _merged(cut.faces[faces])]
-
-
-def _runs(row: Ints) -> list[tuple[int, int]]:
-    """First and last index of each stretch of a row without -1."""
-    change = np.flatnonzero(np.diff(np.concatenate([[False], row >= 0, [False]]).astype(int)))
-    return [(int(a), int(b) - 1) for a, b in change.reshape(-1, 2)]
 
 
 def _label(cut: Partition, face: int, slab: int) -> int:

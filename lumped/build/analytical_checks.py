@@ -117,7 +117,10 @@ def _cylinder(
     profile, z0, z1 = prism
     outer = float(np.hypot(*profile.outer[0][:2]))
     inner = float(np.hypot(*profile.holes[0][0][:2])) if profile.holes else 1e-6 * outer
-    length, at = z1 - z0, _radius_of(field, contact)
+    # Mean distance of a contact from the axis (m).
+    trace = field.contacts[contact].a
+    x = field.xyz[trace.dofs]
+    length, at = z1 - z0, float(trace.b @ np.hypot(x[:, 0], x[:, 1]) / trace.area)
     circuit = mellor(outer, inner, length, k_plane, k_axial)
     for name, where, whole, value in (
         ("cylinder, outside", outer, 2 * np.pi * outer * length, circuit.outer),
@@ -126,10 +129,3 @@ def _cylinder(
         if abs(at - where) < 0.02 * outer:
             return (value, name) if area > WHOLE * whole else None
     return (circuit.end, "cylinder, end") if area > WHOLE * np.pi * (outer**2 - inner**2) else None
-
-
-def _radius_of(field: FieldModel, contact: str) -> float:
-    """Mean distance of a contact from the axis (m)."""
-    trace = field.contacts[contact].a
-    x = field.xyz[trace.dofs]
-    return float(trace.b @ np.hypot(x[:, 0], x[:, 1]) / trace.area)

@@ -215,13 +215,9 @@ class _Way:
         """What the mesh at hand is off by (K), factor of safety included."""
         moves = [move[part] for move in self.moves]
         k = min(self.level, len(moves) - 1)
-        ratio = _ratio(moves[k - 1], moves[k]) if k else 0.5**ORDER
+        # Of what two halvings in turn moved, no better than the order allows.
+        ratio = float(np.clip(moves[k] / max(moves[k - 1], 1e-12), 0.5**ORDER, SLOWEST)) if k else 0.5**ORDER
         return SAFETY * moves[k] / (1.0 - ratio) * (ratio if self.level == len(moves) else 1.0)
-
-
-def _ratio(before: float, after: float) -> float:
-    """Of what two halvings in turn moved, no better than the order allows."""
-    return float(np.clip(after / max(before, 1e-12), 0.5**ORDER, SLOWEST))
 
 
 def _looked_for(looks: _Looks, accuracy: float, most: int) -> MeshChoice:

@@ -12,9 +12,17 @@ from lumped.model.quantities import USUAL
 from lumped.schemas.reader import Table, powers
 from lumped.sources.inverter import InverterLoss, PulseLoss
 from lumped.sources.layer_loss import by_dowell, from_map
-from lumped.sources.loss_laws import EDDY, BrushLoss, CopperLoss, EddyLoss, IronLoss, PowerLoss, RippleLoss
+from lumped.sources.loss_laws import (
+    EDDY,
+    BrushLoss,
+    CopperLoss,
+    EddyLoss,
+    IronLoss,
+    MeasuredLoss,
+    PowerLoss,
+    RippleLoss,
+)
 from lumped.sources.loss_map import MapLoss
-from lumped.sources.loss_measured import MeasuredLoss
 from lumped.transfer.laws import CONSTANT, Law, Linear, TemperatureLaw
 
 COLDEST, HOTTEST = -60.0, 300.0  # degC: from the coldest place a machine stands in to beyond what insulation bears

@@ -66,7 +66,7 @@ def switched(machine: Machine, network: Network) -> Network:
 
 def _coupled(network: Network, switch: str, foot: str) -> Network:
     joints = (x for x in network.links if x.kind == "contact" and foot in x.places)
-    joint = next(x for x in joints if not _of_base(network, x.places))
+    joint = next(x for x in joints if not any(network.declared[place].role is Role.BASE for place in x.places))
     body = next(place for place in joint.places if place != foot)
     links = [replace(x, law=Switched(x.law, switch, True)) if x is joint else x for x in network.links]
     states = [i for i, state in enumerate(network.states) if state == body or state.startswith(f"{body}#")]
@@ -82,10 +82,6 @@ def _coupled(network: Network, switch: str, foot: str) -> Network:
     copies = {film.name: link.name for film, link in zip(films, bare, strict=True)}
     parameters = tuple(_also(p, copies) for p in network.parameters)
     return replace(larger.extended(bare), parameters=parameters)
-
-
-def _of_base(network: Network, places: tuple[str, str]) -> bool:
-    return any(network.declared[place].role is Role.BASE for place in places)
 
 
 def _bare(network: Network, film: Link, face: Place, switch: str) -> Link:

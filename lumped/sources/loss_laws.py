@@ -201,3 +201,27 @@ class RippleLoss(Law):
         D = np.minimum(np.abs(np.asarray(inputs[self.voltage], float)) / self.supply, 1.0)
         ripple = self.supply * D * (1.0 - D) / (self.L * self.frequency)
         return self.factor_ * self.R * ripple**2 / 12.0
+
+
+@dataclass(frozen=True)
+class MeasuredLoss(Law):
+    """Measured input power minus measured output power (W).
+
+    powers : (factor, inputs): factor * product of the inputs, e.g. (1, ("electrical_W",)) and
+        (-pi/30, ("torque_Nm", "speed_rpm"))
+    What the model separates out of it is taken off by sources of law `Scaled` by -1, at the moment's temperature.
+    The difference may be negative in transients (energy stored in the rotor and the field) and is not clipped.
+    """
+
+    powers: tuple[tuple[float, tuple[str, ...]], ...]
+
+    @property
+    def reads(self) -> tuple[str, ...]:  # type: ignore[override]
+        names = [name for _, factors in self.powers for name in factors]
+        return tuple(dict.fromkeys(names))
+
+    def factor(self, inputs: Inputs) -> Array | float:
+        total: Array | float = 0.0
+        for scale, names in self.powers:
+            total = total + scale * np.prod([np.asarray(inputs[name], float) for name in names], axis=0)
+        return total

@@ -76,9 +76,5 @@ class Exchanger(Law):
         moving = least > 0.0
         N = self.UA / np.where(moving, least, 1.0)
         ratio = np.where(moving, least / np.where(most > 0.0, most, 1.0), 0.0)
-        return _single(np.where(moving, self.effectiveness(N, ratio) * least, 0.0))
-
-
-def _single(values: Array) -> Array | float:
-    """A number where nothing varies."""
-    return float(values[0]) if values.shape == (1,) else values
+        values = np.where(moving, self.effectiveness(N, ratio) * least, 0.0)
+        return float(values[0]) if values.shape == (1,) else values

@@ -51,15 +51,12 @@ class Films:
     def coefficient(self, part: str, fluid: str, T: Array, T_fluid: Array | float, now: Conditions) -> Array:
         """h (W/m2/K) at every node of a face, for its temperatures T (degC)."""
         if fluid == "ambient":
-            return self._outside(part, T, now)
+            seen = self.fins_seen if part == "housing" else 1.0
+            natural = self.factors[part] * self._natural(part, T, now)
+            glow = films.radiation(T, now.ambient, self.emissivity * seen)
+            wind = self.wind(now, T) if part == HIDDEN_AT else 0.0
+            return films.mixed(natural, wind) + glow
         return self.factors[fluid] * self._inside(part, fluid, float(np.mean(T_fluid)), now) * np.ones_like(T)
-
-    def _outside(self, part: str, T: Array, now: Conditions) -> Array:
-        seen = self.fins_seen if part == "housing" else 1.0
-        natural = self.factors[part] * self._natural(part, T, now)
-        glow = films.radiation(T, now.ambient, self.emissivity * seen)
-        wind = self.wind(now, T) if part == HIDDEN_AT else 0.0
-        return films.mixed(natural, wind) + glow
 
     def wind(self, now: Conditions, T: Array) -> Array:
         """The hidden effect: road wind on the outer face of the right flange (W/m2/K)."""

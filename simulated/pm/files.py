@@ -18,12 +18,22 @@ def sheet(name: str, base: str, current: float, cold: Mapping[str, float], ambie
     """The tables of NAME.toml."""
     what = f"{current:g} A, machine {PLACES[base]}"
     words = f"Thermal test '{name}': {what}. Simulated measurement, see docs/data-pmsm.md."
+    reading = {"reading": round(cold["cold_V"], 1), "at_degC": cold["cold_degC"], "rpm": 383}
     columns: dict[str, Any] = {
         "current_A": {"quantity": "current", "unit": "A"},
         "speed_rpm": {"quantity": "speed", "unit": "rpm"},
         "T_ambient_degC": {"quantity": "temperature", "unit": "degC", "place": "ambient", "sigma_K": 0.2},
         f"R_{name}": _resistance(name, cold, ambient_end),
-        f"emf_{name}": _emf(cold),
+        f"emf_{name}": {
+            "column": "emf_V",
+            "quantity": "back_emf",
+            "unit": "V",
+            "place": "magnets",
+            "cold": inline(reading),
+            "coefficient_percent_K": [-0.11, -0.10],
+            "meter": inline({"percent": 0.1, "offset": 1.0}),
+            "speed_rpm": 383,
+        },
     }
     test = {"time": "time_s", "description": words, "initial": cold["cold_degC"], "max_gap_s": 1200}
     plate, bench = SWITCHES[base]
@@ -48,20 +58,6 @@ def _resistance(name: str, cold: Mapping[str, float], ambient_end: float) -> dic
         "coefficient_percent_K": [0.392, 0.393],
         "meter": inline({"percent": 0.25, "offset": 0.002, "resolution": 0.002, "range": [0.4, 4.0]}),
         "after": inline(after),
-    }
-
-
-def _emf(cold: Mapping[str, float]) -> dict[str, Any]:
-    reading = {"reading": round(cold["cold_V"], 1), "at_degC": cold["cold_degC"], "rpm": 383}
-    return {
-        "column": "emf_V",
-        "quantity": "back_emf",
-        "unit": "V",
-        "place": "magnets",
-        "cold": inline(reading),
-        "coefficient_percent_K": [-0.11, -0.10],
-        "meter": inline({"percent": 0.1, "offset": 1.0}),
-        "speed_rpm": 383,
     }
 
 

@@ -265,10 +265,10 @@ def finding_words(folder: Folder, errors: Mapping[str, Any]) -> str:
 
 
 def parameters(folder: Folder) -> list[dict[str, Any]]:
-    """The values of the last revision with their intervals, as `calibrate` lists them, those of effects first."""
+    """The values of the last revision with their intervals, as `calibrate` lists them, by `effects_first`."""
     last = folder.history.last
     out = []
-    for p in sorted(working(folder.case)[1].parameters, key=lambda p: "@" not in p.name):
+    for p in working(folder.case)[1].parameters:
         if p.name not in last.intervals:
             continue
         low, high = (max(p.low, min(p.high, to_value(p, s * NORMAL_95 * p.prior_sd))) for s in (-1.0, 1.0))
@@ -285,7 +285,13 @@ def parameters(folder: Folder) -> list[dict[str, Any]]:
                 "identified": b - a < BLIND * (high - low),
             }
         )
-    return out
+    return sorted(out, key=effects_first)
+
+
+def effects_first(p: Mapping[str, Any]) -> tuple[bool, bool, float]:
+    """Sorts the effects' own sizes first, then their exponents, then what lies farthest from its prior."""
+    low, high = p["prior"][1:]
+    return "@" not in p["name"], "^" in p["name"], -abs(p["value"] - p["prior"][0]) / max(high - low, 1e-300)
 
 
 def sensors(folder: Folder) -> dict[str, Channel]:

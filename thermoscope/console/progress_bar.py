@@ -100,7 +100,11 @@ class ProgressBar:
             self.start = (self.share_s, self.cpu())
         if AGAIN.match(message):
             self.leave()
-            self._next_block()
+            # The same stages once more. Beyond what came the last time, and in a first run, one more is always to come.
+            self.block += 1
+            more = int(self.block > self.blocks or not self.same_case)
+            for number in range(self.blocks + 1, self.block + more + 1):
+                self._repeat_block(number)
         word = message.split()[0].rstrip(":,") if message.split() else ""
         stage, count = f"{self.block} {word}" if self.block and word else word, COUNT.search(message)
         part = (int(count[1]) - 1) / int(count[2]) if count else 0.0
@@ -111,13 +115,6 @@ class ProgressBar:
         self.leave()
         self.now, self.part = stage, part
         return True
-
-    def _next_block(self) -> None:
-        """The same stages once more. Beyond what came the last time, and in a first run, one more is always to come."""
-        self.block += 1
-        more = int(self.block > self.blocks or not self.same_case)
-        for number in range(self.blocks + 1, self.block + more + 1):
-            self._repeat_block(number)
 
     def _repeat_block(self, number: int) -> None:
         """The stages of the block before come once more."""

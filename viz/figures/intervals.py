@@ -21,7 +21,7 @@ WIDEST = 2.5  # of what was expected: an interval that is wider runs off the pic
 
 @paper.styled
 def intervals(parameters: Sequence[Mapping[str, Any]], *, png: str | Path | None = None) -> Figure:
-    """Each value with its 95 % interval on the scale of what was expected (grey): effects first, then what moved most.
+    """Each value with its 95 % interval on the scale of what was expected (grey), in the order given.
 
     Blue is what the data fix; pale what they leave as it was; vermilion what left the expected.
     parameters : name, value, unit, ci95, prior [value, low, high] and identified, as `calibrate` lists them, and words
@@ -32,7 +32,6 @@ def intervals(parameters: Sequence[Mapping[str, Any]], *, png: str | Path | None
         middle, low, high = p["prior"]
         half = (high - low) / 2
         rows.append((p, [(x - middle) / half for x in (p["value"], *p["ci95"])]))
-    rows.sort(key=lambda row: ("@" not in row[0]["name"] or "^" in row[0]["name"], -abs(row[1][0])))
     rows = rows[:MOST][::-1]
     figure, (ax,) = paper.subplots(8.4, 0.3 * len(rows) + 1.2)
     ax.axvspan(-1.0, 1.0, color=LIGHT.faint, alpha=0.2, lw=0)

@@ -93,13 +93,6 @@ def course(kind: Archetype, plan: Plan, seed: int) -> Course:
     return Course(machine, fine[::every], T, inputs, jacobian, [s.cell for s in sensors(kind, machine, draw, NOTHING)])
 
 
-def freedoms(kind: Archetype, seed: int) -> dict[str, float]:
-    """Drawn parameters and their scatter."""
-    listing = Listing(seed)
-    kind.build(listing, NOTHING)
-    return dict(listing.__dict__["asked"])
-
-
 def whitened(columns: Array) -> Array:
     """Columns (n, channels, m) of one test as independent numbers (n * channels, m)."""
     keep = np.exp(-EVERY_S / CORRELATED_S)
@@ -110,7 +103,9 @@ def whitened(columns: Array) -> Array:
 def adjustable(kind: Archetype, seed: int, one: Course) -> Array:
     """Answers (n, channels, p) to everything that calibration may move in all tests alike, at one deviation."""
     columns = []
-    for key, sd in freedoms(kind, seed).items():
+    listing = Listing(seed)
+    kind.build(listing, NOTHING)
+    for key, sd in dict(listing.__dict__["asked"]).items():
         changed = kind.build(Draw(seed, {key: 1.0 + STEP}), NOTHING)
         columns.append(one.slopes(changed, NOTHING) * WIDER * sd / STEP)
     moved = one.answer(np.stack(columns, axis=2))

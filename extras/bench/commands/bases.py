@@ -8,6 +8,22 @@ from typing import Any
 from thermoscope import plugin as th
 
 
+def bases(case: th.CaseArgument, json: th.JsonOption = None) -> int:
+    """Which base a machine stood on in each test. Exit code 1 if the readings exclude the one that a sheet says."""
+    with th.progress() as tell:
+        folder = th.open_case(case, tell)
+        hypotheses = th.which_base(folder.case, progress=tell)
+    wrong = [h.test for h in hypotheses if h.declared and h.excluded]
+    document = {
+        "case": folder.case.name,
+        "revision": folder.case.model.revision,
+        "wrong": wrong,
+        "hypotheses": [h.document() for h in hypotheses],
+    }
+    th.give(document, json, lambda: bases_summary(document))
+    return 1 if wrong else 0
+
+
 def bases_summary(document: Mapping[str, Any]) -> th.Summary:
     """Every base for every test, with what it carries off by mechanism, and which test was elsewhere."""
     words = []

@@ -3,9 +3,39 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Any
+from typing import Annotated, Any
 
-from thermoscope import plugin as th
+import typer
+
+from thermoscope import InputError, plugin as th
+
+
+def curves(
+    case: th.CaseArgument,
+    resolution: Annotated[float, typer.Option(min=1e-3, max=100.0, help="K, of the thermocouples.")] = 0.5,
+    against: Annotated[str | None, typer.Option(metavar="TEST|CASE", help="An earlier test, or its case.")] = None,
+    test: Annotated[str | None, typer.Option(help="The later test, with --against; by default the last one.")] = None,
+    out: th.OutOption = None,
+    json: th.JsonOption = None,
+) -> int:
+    """Warming curves: equilibrium, tau_95, the 3 to 4 % rule, equal tests pooled; --against finds what changed since.
+
+    Exit code 1 if the rule fails, equal tests differ, or the later test is not equal to the earlier one.
+    """
+    from extras.bench.commands.drift import show_drift
+    from extras.bench.measuring.curves import curves as found_in
+
+    if against is not None:
+        return show_drift(case, test, against, out, json)
+    if test or out:
+        raise InputError("is for two tests", "--test" if test else "--out", "--against TEST beside it")
+    with th.progress() as tell:
+        folder = th.open_case(case, tell)
+        tell("fitting the warming curves")
+        result = found_in(folder.case, resolution)
+    document = result.document()
+    th.give(document, json, lambda: curves_summary(document))
+    return 0 if result.agrees else 1
 
 
 def curves_summary(document: Mapping[str, Any]) -> th.Summary:

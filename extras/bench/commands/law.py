@@ -4,9 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import Any
+from typing import Annotated, Any
 
 import numpy as np
+import typer
 
 from extras.bench.steady_law.law import Prediction, SteadyLaw, checks, find_law
 from extras.bench.steady_law.steady_tests import Columns, SteadyTests, read_tests
@@ -14,6 +15,35 @@ from thermoscope import InputError, plugin as th
 
 MOST_INPUTS = 3  # of a law: with more, forms outnumber the tests of any bench
 Predicted = tuple[SteadyTests, Prediction]
+
+
+def law(
+    tests: Annotated[Path, typer.Argument(metavar="TESTS.csv", help="A row for each steady test.")],
+    heat: Annotated[str, typer.Option(metavar="COLUMN", help="The heat, in W.")],
+    coolant: Annotated[str, typer.Option(metavar="COLUMN", help="The coolant's inlet, in degC.")],
+    follows: Annotated[list[str], typer.Option(metavar="COLUMN[=UNIT]", help="What may set the cooling: 1 to 3.")],
+    temperatures: Annotated[str, typer.Option(metavar="PATTERN", help="Columns in degC, e.g. 'T_*'.")],
+    ambient: Annotated[str | None, typer.Option(metavar="COLUMN|DEGC", help="Where heat may go too.")] = None,
+    fluid: Annotated[str, typer.Option(help="oil or water: counts with its viscosity, and warms.")] = "",
+    predict: Annotated[Path | None, typer.Option(metavar="FILE.csv", help="Tests of the same columns.")] = None,
+    out: th.OutOption = None,
+    json: th.JsonOption = None,
+) -> int:
+    """One law of at most seven numbers from a table of steady tests, and what it predicts. Exit code 1 without one."""
+    columns = law_request(heat, coolant, follows, temperatures, ambient, fluid)
+    with th.progress() as tell:
+        tell(f"reading {tests}")
+        steady = read_tests(tests, columns)
+        others = None if predict is None else read_tests(predict, columns, steady.scales)
+        result = find_law(steady, tell)
+        document = {"file": str(tests), **result.document(), "checks": checks(result, tell)}
+    predicted = None if others is None else (others, result.predict(others))
+    if predicted and predicted[0].names:
+        document["predicted"] = {"left_out": str(predict), **predicted[1].agreement(predicted[0])}
+    th.give(document, json, lambda: law_summary(document))
+    if out is not None:
+        th.notes(f"written: {path}" for path in law_files(result, predicted, out))
+    return 0 if document["verdict"] == "law" else 1
 
 
 def law_request(
@@ -29,23 +59,6 @@ def law_request(
         raise InputError(f"{len(pairs)} inputs", "--follows", f"at most {MOST_INPUTS}")
     degC = None if ambient is None else th.as_number(ambient)
     return Columns(heat, coolant, pairs, temperatures, ambient if degC is None else degC, fluid)
-
-
-def law_document(
-    file: Path, columns: Columns, predict: Path | None, tell: th.Progress
-) -> tuple[SteadyLaw, dict[str, Any], Predicted | None]:
-    """The law of a file with its checks, and what it predicts of another one."""
-    tell(f"reading {file}")
-    tests = read_tests(file, columns)
-    others = None if predict is None else read_tests(predict, columns, tests.scales)
-    law = find_law(tests, tell)
-    document = {"file": str(file), **law.document(), "checks": checks(law, tell)}
-    if others is None:
-        return law, document, None
-    prediction = law.predict(others)
-    if others.names:
-        document["predicted"] = {"left_out": str(predict), **prediction.agreement(others)}
-    return law, document, (others, prediction)
 
 
 def law_summary(document: Mapping[str, Any]) -> th.Summary:

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
-from pathlib import Path
-from typing import Any
+from collections.abc import Callable, Mapping
+from typing import Annotated, Any
+
+import typer
 
 from extras.bench.live.session import Session
 from extras.bench.live.settings import read_bench
@@ -16,10 +17,18 @@ from thermoscope import InputError, plugin as th
 OPEN = (UNDECIDED, "the time is over", "the rows are at their end")
 
 
-def live_document(
-    case: str, follow: str, test: str, drive: bool, json: str | None
-) -> tuple[dict[str, Any], list[Mapping[str, Any]]]:
-    """What a run on the bench ended with, and its journal; its rows are a test of the case."""
+def live(
+    case: th.CaseArgument,
+    follow: Annotated[str, typer.Option("--follow", metavar="ROWS", help="FILE, -, tcp://HOST:PORT or mqtt://HOST.")],
+    test: Annotated[str, typer.Option(metavar="NAME", help="The test of the case that the rows become.")] = "live",
+    drive: Annotated[bool, typer.Option("--drive", help="Send the set points; else a person sets them.")] = False,
+    out: th.OutOption = None,
+    json: th.JsonOption = None,
+) -> int:
+    """A test that steers itself: rows come in, the next set point goes out, until one cause has 90 %.
+
+    Exit code 1 if it ends without an answer.
+    """
     path = th.find_case(case)
     if th.PACKAGE in path.resolve().parents:
         raise InputError("comes along, and is not written to", str(path), "a copy of its folder")
@@ -52,7 +61,14 @@ def live_document(
         "set_points": [e for e in events if e["event"] == "set"],
         "file": str(store.path),
     }
-    return document, events
+    th.give(document, json, lambda: live_summary(document))
+    if out is not None:
+        from extras.bench.figure import odds_over_time
+
+        file = out / f"{test}-odds.png"
+        odds_over_time(th.BenchRun(events), png=file)
+        th.notes([f"written: {file}"])
+    return 0 if document["decided"] else 1
 
 
 def live_summary(document: Mapping[str, Any]) -> th.Summary:
@@ -71,12 +87,3 @@ def live_summary(document: Mapping[str, Any]) -> th.Summary:
     return th.Summary(
         f"{document['stop']}, after {document['minutes']:.0f} min.", parts, f"every row in {document['file']}"
     )
-
-
-def live_picture(events: Sequence[Mapping[str, Any]], test: str, out: Path) -> Path:
-    """Odds over time, set points beneath.  events : of the journal"""
-    from extras.bench.figure import odds_over_time
-
-    file = out / f"{test}-odds.png"
-    odds_over_time(th.BenchRun(events), png=file)
-    return file

@@ -2,10 +2,30 @@
 
 from __future__ import annotations
 
-from typing import Any
+from pathlib import Path
+from typing import Annotated, Any
 
-from extras.bench.measuring.protocol import Protocol
-from thermoscope import plugin as th
+import typer
+
+from extras.bench.measuring.protocol import Protocol, Record, protocol as check_record
+from extras.bench.measuring.record_file import read_record
+from thermoscope import InputError, plugin as th
+
+
+def protocol(
+    record: Annotated[Path | None, typer.Argument(metavar="RECORD.toml", help="A test's record so far.")] = None,
+    json: th.JsonOption = None,
+) -> int:
+    """The thermal test: what to measure when, what is wrong with a record, and the temperatures it gives."""
+    with th.progress() as tell:
+        tell("checking the record")
+        result = check_record(Record(1.0) if record is None else read_record(record))
+    th.give(result.document(), json, lambda: protocol_summary(result))
+    if result.refused:
+        first = result.refused[0]
+        more = f" (and {len(result.refused) - 1} more)" if len(result.refused) > 1 else ""
+        raise InputError(first.words.split(";")[0], f"{record} [{first.name}]", first.words.partition("; ")[2] + more)
+    return 0 if record is None or result.complete else 1
 
 
 def protocol_summary(result: Protocol) -> th.Summary:

@@ -4,7 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import Any
+from typing import Annotated, Any
+
+import typer
 
 from extras.bench.heat_run.judgement import judged
 from extras.bench.heat_run.page import tables, write_report
@@ -12,13 +14,20 @@ from extras.bench.heat_run.record import read_heat_run
 from thermoscope import plugin as th
 
 
-def report_files(record: Path, folder: Path, tell: th.Progress) -> tuple[dict[str, Any], list[Path]]:
-    """The document of a heat run, and the files in `folder`, which are written when all of it is known."""
-    tell("reading the record")
-    run = read_heat_run(record, tell)
-    document = judged(run)
-    tell("printing")
-    return document, write_report(document, folder, "-".join(th.file_stem(run.title).split()))
+def report(
+    record: Annotated[Path, typer.Argument(metavar="RECORD.toml|CASE", help="A heat run, or a case with one.")],
+    out: th.OutOption = None,
+    json: th.JsonOption = None,
+) -> int:
+    """The heat run by IEC 60034-1 on a page to sign: rise against its class's limit. Exit code 1 unless it passes."""
+    with th.progress() as tell:
+        tell("reading the record")
+        run = read_heat_run(record, tell)
+        document = judged(run)
+        tell("printing")
+        paths = write_report(document, out or Path("out"), "-".join(th.file_stem(run.title).split()))
+    th.give(document, json, lambda: report_summary(document, paths))
+    return 0 if document["verdict"] == "passes" else 1
 
 
 def report_summary(document: Mapping[str, Any], paths: Sequence[Path]) -> th.Summary:

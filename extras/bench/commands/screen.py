@@ -1,11 +1,13 @@
-"""thermoscope bench screen MACHINE, thermoscope bench two-paths CASE"""
+"""thermoscope bench screen MACHINE, thermoscope bench two-paths CASE, thermoscope bench carry CASE CASE..."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
 from functools import partial
 from pathlib import Path
-from typing import Any
+from typing import Annotated, Any
+
+import typer
 
 from thermoscope import InputError, plugin as th
 
@@ -13,30 +15,79 @@ DESIGNS = ("full", "half", "gap", "morris", "sobol")
 TRAJECTORIES, SAMPLES = 20, 256  # 160 runs, 2304 runs of some milliseconds
 
 
-def screening_document(machine: str, design: str) -> dict[str, Any]:
-    """Which of table I's factors move magnets, winding, end winding and laminations."""
+def screen(
+    machine: Annotated[str, typer.Argument(metavar="MACHINE", help="A machine file, or a name that comes along.")],
+    design: Annotated[str, typer.Option(help="full (128 runs), half (64), gap (256), morris or sobol.")] = "full",
+    out: th.OutOption = None,
+    json: th.JsonOption = None,
+) -> int:
+    """Which factors move the temperatures of a PM machine: effects with Lenth's limits, Morris or Sobol."""
     if design not in DESIGNS:
         raise InputError(f"no design '{design}'", "--design", f"one of {', '.join(DESIGNS)}")
     th.required(("SALib",) if design in ("morris", "sobol") else ())
-    design_machine = th.load_machine_file(Path(machine))
-    roles = {part.role for part in design_machine.parts}
-    if th.Role.MAGNET not in roles or th.Role.HOUSING in roles:
-        right = "a machine with magnets in open laminations, e.g. pmsm-m1"
-        raise InputError(f"{design_machine.name} has a housing or no magnets", "screening", right)
-    effects = (_by_shares if design in ("morris", "sobol") else _by_effects)(design_machine, design)
-    return {"machine": design_machine.name, "design": design, **effects}
+    with th.progress() as tell:
+        tell(f"screening {machine}")
+        design_machine = th.load_machine_file(Path(machine))
+        roles = {part.role for part in design_machine.parts}
+        if th.Role.MAGNET not in roles or th.Role.HOUSING in roles:
+            right = "a machine with magnets in open laminations, e.g. pmsm-m1"
+            raise InputError(f"{design_machine.name} has a housing or no magnets", "screening", right)
+        effects = (_by_shares if design in ("morris", "sobol") else _by_effects)(design_machine, design)
+    document = {"machine": design_machine.name, "design": design, **effects}
+    th.give(document, json, lambda: screening_summary(document))
+    if out is not None:
+        th.notes(f"written: {path}" for path in plots(document, out))
+    return 0
+
+
+def two_paths(
+    case: th.CaseArgument,
+    winding: Annotated[str, typer.Option(help="Place of the winding's mean.")] = "winding.copper",
+    machine: Annotated[str, typer.Option(help="Place of the machine's inside.")] = "magnets",
+    json: th.JsonOption = None,
+) -> int:
+    """The network of a case as two resistances: machine to ambient, winding to machine."""
+    from extras.bench.reduction.two_paths import of_test
+
+    if winding == machine:
+        raise InputError(f"'{winding}' is both", "--winding, --machine", "two places of the network")
+    with th.progress() as tell:
+        folder = th.open_case(case, tell)
+        by_test = {t.name: of_test(folder.case, t, winding, machine).document() for t in folder.case.tests}
+    th.give({"case": folder.case.name, "tests": by_test}, json, lambda: paths(by_test))
+    return 0
+
+
+def carry(
+    source: th.CaseArgument,
+    targets: Annotated[list[str], typer.Argument(metavar="CASE...", help="Cases of other machines.")],
+    json: th.JsonOption = None,
+) -> int:
+    """The calibrated model of one case on other machines. Exit code 1 if one disagrees beyond its uncertainty."""
+    from extras.bench.reduction.transfer import transferred
+
+    with th.progress() as tell:
+        calibrated = th.open_case(source, tell)
+        transfers = [transferred(calibrated.case, th.open_case(name, tell).case) for name in targets]
+    document = {
+        "source": calibrated.case.name,
+        "revision": calibrated.case.model.revision,
+        "targets": [one.document() for one in transfers],
+    }
+    th.give(document, json, lambda: show_transfer(document))
+    return 0 if all(one.agrees for one in transfers) else 1
 
 
 def _by_effects(machine: th.MachineDescription, design: str) -> dict[str, Any]:
     from extras.bench.factors.factorial import fractional, full
-    from extras.bench.factors.screening import TABLE_I, WITH_GAP, screen
+    from extras.bench.factors.screening import TABLE_I, WITH_GAP, screen as screened
 
     plans = {
         "full": lambda: full(TABLE_I),
         "half": lambda: fractional(TABLE_I, {"G": "ABCDEF"}),
         "gap": lambda: full(WITH_GAP),
     }
-    return screen(machine, plans[design]()).document()
+    return screened(machine, plans[design]()).document()
 
 
 def _by_shares(machine: th.MachineDescription, design: str) -> dict[str, Any]:

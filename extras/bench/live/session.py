@@ -88,7 +88,12 @@ class Session:
                 self.steering.done()
             if self.thinking is not None and (self.thinking.done() or over):
                 thought, self.thinking = self.thinking.result(), None
-                self._take(thought)
+                self.thought = thought
+                self.tell(words(thought))
+                sent = self.steering.apply(thought)
+                if not self.drive and thought.choice and not thought.stop:
+                    self.tell(f"set {_set_words(self.steering)}, then type done")
+                self._out(sent)
                 if thought.stop:
                     return thought.stop
             if self.thinking is None and self.steering.is_due:
@@ -96,14 +101,6 @@ class Session:
             elif over and self.thinking is None:
                 self._safe()
                 return "the rows are at their end"
-
-    def _take(self, thought: Thought) -> None:
-        self.thought = thought
-        self.tell(words(thought))
-        sent = self.steering.apply(thought)
-        if not self.drive and thought.choice and not thought.stop:
-            self.tell(f"set {_set_words(self.steering)}, then type done")
-        self._out(sent)
 
     def _out(self, sent: list[dict[str, float]]) -> None:
         for set_point in sent:

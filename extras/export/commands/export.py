@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
 
 from extras.export.compilers import compiler, here
 from thermoscope import InputError, MissingDependency, ThermoscopeError, plugin as th
@@ -17,21 +19,32 @@ MODELS = ("c", "fmu", "json", "matlab")
 VERSIONS = (2, 3)  # of FMI
 
 
-def check_form(form: str, version: int, sensors: Sequence[str], further: Mapping[str, Any]) -> None:
-    """Raises InputError for a form that nobody writes, and for options that another form has.
-
-    further : forms of other extras
-    """
+def export(
+    case: th.CaseArgument,
+    out: th.OutOption = None,
+    form: Annotated[str, typer.Option("--as", help="xlsx, csv: results; c, fmu, json, matlab; observer: C.")] = "xlsx",
+    limit: th.LimitOption = None,
+    fmi: Annotated[int, typer.Option(help="Version of an FMU: 2 or 3.")] = 2,
+    sensor: Annotated[list[str] | None, typer.Option(metavar="NAME", help="Of an observer; else all.")] = None,
+    json: th.JsonOption = None,
+) -> int:
+    """Results as a workbook or CSV files; or the model to run elsewhere: C99, FMU, JSON or MAT file."""
+    further = {} if form in (*WORKBOOKS, *MODELS) else th.plugins("exports")
     if form not in (*WORKBOOKS, *MODELS, *further):
         raise InputError(
             f"'{form}' is not a form to export", "--as", th.suggestion(form, (*WORKBOOKS, *MODELS, *further))
         )
-    if version not in VERSIONS:
-        raise InputError(f"FMI {version} is not written", "--fmi", "2 or 3")
-    if sensors and form not in further:
+    if fmi not in VERSIONS:
+        raise InputError(f"FMI {fmi} is not written", "--fmi", "2 or 3")
+    if sensor and form not in further:
         raise InputError(f"--as {form} has no sensors", "--sensor", "--as observer")
     if form == "fmu":
         compiler(here())
+    if form in further:
+        return int(further[form](case, out, th.read_limits(limit or ()), tuple(sensor or ()), json))
+    if form in MODELS:
+        return export_model(case, out, form, th.read_limits(limit or ()), fmi, json)
+    return export_workbook(case, out, form, json)
 
 
 def export_workbook(case: str, out: Path | None, form: str, target: str | None) -> int:

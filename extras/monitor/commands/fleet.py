@@ -6,9 +6,10 @@ from collections.abc import Mapping, Sequence
 from contextlib import nullcontext
 from dataclasses import replace
 from pathlib import Path
-from typing import Any
+from typing import Annotated, Any
 
 import numpy as np
+import typer
 
 from extras.monitor.fleet import Population, population
 from extras.monitor.fleet.population import DIFFERS
@@ -17,6 +18,20 @@ from thermoscope import InputError, plugin as th
 
 WIDE = 50.0  # spread (%) of a parameter beyond which motors of one type seldom are; films and joints drift by a third
 FAR, LEAST_K = 3.0, 0.3  # times the usual error, and what that is at least: below it only noise is left
+
+
+def fleet(
+    case: th.CaseArgument,
+    recordings: Annotated[list[Path], typer.Argument(metavar="RECORDINGS...", help="UNIT@2026-03.csv, or folders.")],
+    like: Annotated[str | None, typer.Option(metavar="TEST", help="As in this test; else the first that fits.")] = None,
+    cluster: Annotated[str | None, typer.Option(metavar="ADDRESS", help="Of a Dask scheduler.")] = None,
+    json: th.JsonOption = None,
+) -> int:
+    """Motors that should be equal: what differs between them, what drifts over the months, which one stands out."""
+    with th.progress() as tell:
+        document = fleet_document(case, recordings, like, cluster, tell)
+    th.give(document, json, lambda: fleet_summary(document))
+    return 0
 
 
 @th.one_blas_thread
@@ -115,34 +130,24 @@ def fleet_summary(document: Mapping[str, Any]) -> th.Summary:
     names = dict.fromkeys(o["unit"] for o in outliers)
     odd = f"{len(names)} stand{'s' * (len(names) == 1)} out: {worst}" if outliers else "none stands out"
     sentence = f"{count} motors; {odd}."
-    rows = [
-        [
-            o["unit"],
-            th.value_words(o["parameter"]),
-            o["factor"],
-            *o["factor_ci95"],
-            [th.value_words(n) for n in o["instead"]],
-        ]
-        for o in outliers
-    ]
-    differ = [
-        [
-            th.value_words(p["name"]),
-            p["mean"],
-            p["spread_percent"],
-            p["differs"],
-            p.get("drift_percent_year"),
-            *(p.get("drift_ci95") or [None, None]),
-        ]
-        for p in sorted(document["parameters"], key=lambda p: -p["spread_percent"])
-    ]
     parts = [
-        th.Table("Outliers", ["motor", "parameter", "factor", "from", "to", "or else"], rows),
-        th.Table(
+        th.Table.of(
+            "Outliers",
+            outliers,
+            "motor=unit | parameter=words | factor | from=low | to=high | or else=others",
+            words=lambda o: th.value_words(o["parameter"]),
+            low=lambda o: o["factor_ci95"][0],
+            high=lambda o: o["factor_ci95"][1],
+            others=lambda o: [th.value_words(n) for n in o["instead"]],
+        ),
+        th.Table.of(
             "Parameters over the fleet",
-            ["parameter", "mean", "spread (%)", "differs", "drift (%/year)", "from", "to"],
-            differ,
-            keep=["mean", "spread (%)", "differs", "drift (%/year)"],
+            sorted(document["parameters"], key=lambda p: -p["spread_percent"]),
+            "parameter=words | *mean | *spread (%)=spread_percent | *differs | *drift (%/year)=drift_percent_year | "
+            "from=low | to=high",
+            words=lambda p: th.value_words(p["name"]),
+            low=lambda p: p.get("drift_ci95", [None, None])[0],
+            high=lambda p: p.get("drift_ci95", [None, None])[1],
         ),
     ]
     return th.Summary(" ".join(filter(None, [unequal_words(document), sentence])), parts, "--json FILE")

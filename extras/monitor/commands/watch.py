@@ -3,20 +3,58 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from contextlib import suppress
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any
+from typing import Annotated, Any
 
 import numpy as np
+import typer
 
 from extras.monitor.observer import Observer, Sample
 from extras.monitor.observer.learning import Design
 from extras.monitor.observer.process import Process
-from extras.monitor.rows.live_rows import PIPE, Rows
-from extras.monitor.rows.observing import joined, record_of
-from thermoscope import Record, plugin as th
+from extras.monitor.rows.live_rows import PIPE, TOGETHER, Rows, table_of
+from extras.monitor.rows.observing import chosen, designed, joined, record_of
+from thermoscope import InputError, Record, plugin as th
 
 MINUTE = 60.0
+
+
+def watch(
+    case: th.CaseArgument,
+    follow: Annotated[str, typer.Option("--follow", metavar="FILE|-", help="A recording, or - for rows from a pipe.")],
+    sensor: Annotated[list[str] | None, typer.Option(metavar="NAME", help="Use these sensors alone.")] = None,
+    like: Annotated[str | None, typer.Option(metavar="TEST", help="As in this test; else the first that fits.")] = None,
+    out: th.OutOption = None,
+    json: th.JsonOption = None,
+) -> int:
+    """Beside a running machine: all temperatures and missing heat from its sensors, and where the model fails."""
+    with th.progress() as tell:
+        folder = th.open_case(case, tell)
+        sheets = {e.name: th.load_sheet(e.sheet) for e in folder.settings.tests}
+        name, table, parts = table_of(follow, TOGETHER, sheets, folder.case.model.network, like)
+        channels = {c.name: c for t in folder.case.tests if t.name == name for c in t.channels}
+        here = [c for n, c in channels.items() if n in table.sensors()]
+        sensors = chosen(here, sensor or (), follow)
+        withheld = [c for c in here if c not in sensors]
+        session = Session(folder, designed(folder, tell), sensors, withheld, json != th.STDOUT)
+    with suppress(KeyboardInterrupt):
+        for part in parts:
+            session.take(table.rows(part))
+    if session.one is None:
+        raise InputError("holds no row", follow, "rows of numbers under the header")
+    file = th.write_whole(watched_file(folder, follow, out), session.csv())
+    document = {
+        "case": folder.case.name,
+        "revision": folder.case.model.revision,
+        "source": follow,
+        "like": name,
+        **session.document(),
+        "file": str(file),
+    }
+    th.give(document, json, lambda: watch_summary(document))
+    return 0
 
 
 def watched_file(folder: th.Folder, follow: str, out: Path | None) -> Path:
@@ -149,7 +187,7 @@ class Session:
                 {
                     "place": b,
                     "end_W": last.heat[i],
-                    "end_ci95": _interval(last.heat[i], last.heat_sd[i]),
+                    "end_ci95": [last.heat[i] + s * th.NORMAL_95 * last.heat_sd[i] for s in (-1.0, 1.0)],
                     "allowed_sd_W": noise.sd[i],
                 }
                 for i, b in enumerate(self.design.process.bodies)
@@ -169,10 +207,6 @@ class Session:
         }
 
 
-def _interval(value: float, sd: float) -> list[float]:
-    return [value - th.NORMAL_95 * sd, value + th.NORMAL_95 * sd]
-
-
 def _alarm_text(kind: str, where: str, amplitude: float, probability: float) -> str:
     if kind == "model":
         return f"the model fails at {where}: {amplitude:+.3g} W beyond doubt ({th.percent(probability)})"
@@ -186,23 +220,25 @@ def watch_summary(document: dict[str, Any]) -> th.Summary:
     sentence = (
         f"{document['duration_s'] / MINUTE:.0f} min watched; hottest: {hottest['place']}, {hottest['max_C']:.1f} degC."
     )
-    rows = [[p["place"], p["end_C"], p["end_ci95"][1] - p["end_C"], p["max_C"]] for p in document["places"]]
-    events = [
-        [
-            _alarm_text(
+    parts = [
+        th.Table.of(
+            "What was said",
+            document["events"],
+            "event | from (s)=from_s | to (s)=to_s",
+            event=lambda e: _alarm_text(
                 e["kind"], e["where"], float("nan") if e["amplitude"] is None else e["amplitude"], e["probability"]
             ),
-            e["from_s"],
-            e["to_s"],
-        ]
-        for e in document["events"]
-    ]
-    withheld = [[w["sensor"], w["rmse_K"], w["open_loop_rmse_K"]] for w in document["withheld"]]
-    parts = [
-        th.Table("What was said", ["event", "from (s)", "to (s)"], events),
-        th.Table("Sensors that were not given", ["sensor", "error (K)", "open loop (K)"], withheld),
-        th.Table(
-            "", ["place", "end (degC)", "95 % (+- K)", "largest (degC)"], rows, keep=["end (degC)", "95 % (+- K)"]
+        ),
+        th.Table.of(
+            "Sensors that were not given",
+            document["withheld"],
+            "sensor | error (K)=rmse_K | open loop (K)=open_loop_rmse_K",
+        ),
+        th.Table.of(
+            "",
+            document["places"],
+            "place | *end (degC)=end_C | *95 % (+- K)=half95 | largest (degC)=max_C",
+            half95=lambda p: p["end_ci95"][1] - p["end_C"],
         ),
     ]
     return th.Summary(sentence, [p for p in parts if p.rows], f"every sample in {document['file']}")

@@ -6,11 +6,12 @@ import time
 from collections.abc import Mapping, Sequence
 from contextlib import nullcontext
 from pathlib import Path
-from typing import Any
+from typing import Annotated, Any
 
 import numpy as np
+import typer
 
-from extras.rating.commands.rate import case_or_machine
+from extras.rating.commands.rate import case_or_machine, once, read_at
 from extras.rating.design.condensations import Condensations
 from extras.rating.design.design_problem import DesignRequest, checked_request, design_problem
 from extras.rating.design.machine_keys import MachineFile, machine_file_text, short_key
@@ -20,29 +21,55 @@ from extras.rating.optimisation.search import METHODS, Design, Effort, StoppedSe
 from thermoscope import InputError, plugin as th
 
 
-def optimised(
-    name: str, request: DesignRequest, method: str, effort: Effort, cluster: str | None, out: Path | None
-) -> tuple[dict[str, Any], Path, bool]:
-    """The Pareto set of a case or a machine file, the folder of its table, plots and machine files, and whether the
-    user stopped the search."""
-    with th.progress() as tell, th.dask_cluster(cluster) if cluster else nullcontext() as executor:
+def optimise(
+    name: Annotated[str, typer.Argument(metavar="CASE|MACHINE", help="A case, or a machine with nothing measured.")],
+    limit: th.HotLimitOption = None,
+    torque: Annotated[float | None, typer.Option(min=0.0, metavar="NM", help="Required, for ever.")] = None,
+    at: Annotated[list[str] | None, typer.Option("--at", metavar="NAME=VALUE", help="Input or boundary.")] = None,
+    vary: Annotated[
+        list[str] | None, typer.Option(metavar="NAME[=LOW:HIGH]", help="Else flows, jacket and fins.")
+    ] = None,
+    method: Annotated[str, typer.Option(help="nsga2 or unsga3.")] = "nsga2",
+    population: Annotated[int, typer.Option(min=8, help="Designs per generation.")] = 48,
+    generations: Annotated[int, typer.Option(min=1)] = 30,
+    seed: Annotated[int, typer.Option(min=0)] = 1,
+    cluster: Annotated[str | None, typer.Option(metavar="ADDRESS", help="Of a Dask scheduler.")] = None,
+    cycle: Annotated[str | None, typer.Option(metavar="FILE|NAME", help="A vehicle's, with its gains.")] = None,
+    robust: Annotated[bool, typer.Option("--robust", help="Temperatures at the upper end of their bands.")] = False,
+    out: th.OutOption = None,
+    json: th.JsonOption = None,
+) -> int:
+    """Designs that trade peak temperature, settling time, copper loss and auxiliary power; each a machine file."""
+    if method not in METHODS:
+        raise InputError(f"'{method}' is not a method", "--method", ", ".join(METHODS))
+    request = DesignRequest(
+        th.read_limits(limit or ()), torque, read_at(at or ()), read_bounds(vary or ()), robust, cycle
+    )
+    if not request.limits:
+        raise InputError("no limit is given", "--limit", "PLACE=DEGC, for example winding=155")
+    effort = Effort(population, generations, seed)
+    on_cluster = th.dask_cluster(cluster) if cluster else nullcontext()
+    with once() as messages, th.progress() as tell, on_cluster as executor:
         folder = case_or_machine(name, tell, lambda settings: checked_request(settings, request))
         problem, file = design_problem(folder, request, tell)
         th.notes([effort_words(problem, effort)])
-        count, stopped = effort.population * effort.generations, False
+        count, stopped = population * generations, False
         try:
             designs = pareto_set(problem, METHODS[method], effort, executor, tell)
         except StoppedSearchError as stop:
             th.notes([f"stopped: {stop.judged} of {count} designs were judged; the best of these are written and stay"])
             designs, count, stopped = stop.designs, stop.judged, True
-        document = document_of(problem, designs, method, count)
+        document = {"case": folder.case.name, **document_of(problem, designs, method, count)}
         if not stopped and file is not None and any(v.conducts for v in problem.space.variables):
-            samples = [problem.space.named(designs[k].x) for k in _spread(designs, 3)]
+            spread = {round(k) for k in np.linspace(0, len(designs) - 1, min(3, len(designs)))}  # both ends among them
+            samples = [problem.space.named(designs[k].x) for k in sorted(spread)]
             document["interpolation_error"] = Condensations(problem, tell).verified(samples)
         where = out or Path("out") / f"{th.file_stem(folder.case.name)}-designs"
         tell(f"writing {where}")
-        files = _write(where, problem, designs, document, file)
-    return {"case": folder.case.name, **document, "files": files}, where, stopped
+        document["files"] = _write(where, problem, designs, document, file)
+    th.notes(messages)
+    th.give(document, json, lambda: optimisation_summary(document, where))
+    return 130 if stopped else 0  # as shells have it
 
 
 def effort_words(problem: Problem, effort: Effort) -> str:
@@ -105,11 +132,6 @@ def document_of(problem: Problem, designs: Sequence[Design], method: str, judged
             for k, d in enumerate(designs)
         ],
     }
-
-
-def _spread(designs: Sequence[Design], count: int) -> list[int]:
-    """Numbers of designs evenly over the set, both ends among them."""
-    return sorted({round(k) for k in np.linspace(0, len(designs) - 1, min(count, len(designs)))})
 
 
 def _write(

@@ -8,9 +8,10 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import replace
 from pathlib import Path
-from typing import Any
+from typing import Annotated, Any
 
 import numpy as np
+import typer
 
 from extras.rating.envelope import DUTIES, LimitError, Rating, rated, until
 from extras.rating.operation import Operation
@@ -24,6 +25,36 @@ POINTS = 6  # speeds of the envelope
 LOADS = 8  # loads of the map
 LARGEST_START = 1e7  # in amperes or newton metres: beyond any machine
 WARM = 0.75  # load at rest from which an overload begins warm
+
+
+def rate(
+    name: Annotated[str, typer.Argument(metavar="CASE|MACHINE", help="A case, or a machine with nothing measured.")],
+    limit: th.HotLimitOption = None,
+    at: Annotated[list[str] | None, typer.Option("--at", metavar="NAME=VALUE", help="Input or boundary.")] = None,
+    losses: Annotated[Path | None, typer.Option(metavar="CSV", help="Loss map over torque and speed.")] = None,
+    voltage: Annotated[float | None, typer.Option(min=0.0, max=1e7, help="Of the map's slices.")] = None,
+    overload: Annotated[float, typer.Option(min=100.1, max=1e4, help="Percent of the continuous rating.")] = 150.0,
+    top: Annotated[float | None, typer.Option(min=0.0, max=1e6, metavar="RPM", help="Of the envelope.")] = None,
+    load: Annotated[list[str] | None, typer.Option(metavar="INPUT", help="What the load multiplies.")] = None,
+    cycle: Annotated[str | None, typer.Option(metavar="FILE|NAME", help="A drive cycle to repeat.")] = None,
+    mapped: Annotated[bool, typer.Option("--map", help="How long at every speed and load.")] = False,
+    start: Annotated[str, typer.Option(metavar="cold|LOAD", help="S2 begins cold, or at rest under a load.")] = "cold",
+    bands: th.BandsOption = None,
+    json: th.JsonOption = None,
+) -> int:
+    """What a machine may carry: S1, S2, S3, S6, 10 s, 60 s, derating, overload; with bands, beside the last model."""
+    options = th.read_limits(limit or ()), read_at(at or ()), tuple(load or ())
+    request = RatingRequest(*options, losses, voltage, overload / 100.0, top, cycle, mapped, read_start(start))
+    if voltage is not None and losses is None:
+        right = "--losses FILE.csv with a column voltage_V"
+        raise InputError("is of a loss map, and none is given", "--voltage", right)
+    if not request.limits:
+        raise InputError("no limit is given", "--limit", "PLACE=DEGC, for example winding=155")
+    with th.progress() as tell, once() as messages:
+        document = rating_document(case_or_machine(name, tell), request, bands, tell)
+    th.notes(messages)
+    th.give(document, json, lambda: rating_summary(document))
+    return 0
 
 
 def holding_times(

@@ -21,6 +21,8 @@ def enclosure(g: Geometry, z: Axial) -> tuple[Part, ...]:
     seat, shaft = g.bearing.outer_diameter / 2, g.shaft.bearing_diameter / 2
     flange, bearing = shapes.ring(seat, r.shell), shapes.ring(shaft, seat)
     left, right = (z.flange0, z.inner0), (z.inner1, z.flange1)
+    top, middle = -g.feet.shaft_height, (z.inner0 + z.inner1) / 2
+    plate = shapes.rectangle(-g.base.width / 2, g.base.width / 2, top - g.base.thickness, top)
     return (
         _housing(g, z, r),
         Part("flange.left", "aluminium-cast", ((flange, *left),), role=Role.END_SHIELD),
@@ -28,7 +30,7 @@ def enclosure(g: Geometry, z: Axial) -> tuple[Part, ...]:
         Part("bearing.left", "bearing", ((bearing, *left),), role=Role.BEARING),
         Part("bearing.right", "bearing", ((bearing, *right),), role=Role.BEARING),
         Part("feet", "aluminium-cast", _feet(g, z, r), role=Role.FOOT),
-        _base(g, z),
+        Part("base", "steel", ((plate, middle - g.base.length / 2, middle + g.base.length / 2),), role=Role.BASE),
         *(nozzle.part() for nozzle in nozzles(g)),
     )
 
@@ -82,12 +84,6 @@ def _feet(g: Geometry, z: Axial, r: Radii) -> tuple[Prism, ...]:
     near, far = z.inner0 + g.feet.inset, z.inner1 - g.feet.inset
     spans = ((near, near + g.feet.length), (far - g.feet.length, far))
     return tuple((foot, *span) for foot in (left, right) for span in spans)
-
-
-def _base(g: Geometry, z: Axial) -> Part:
-    top, middle = -g.feet.shaft_height, (z.inner0 + z.inner1) / 2
-    plate = shapes.rectangle(-g.base.width / 2, g.base.width / 2, top - g.base.thickness, top)
-    return Part("base", "steel", ((plate, middle - g.base.length / 2, middle + g.base.length / 2),), role=Role.BASE)
 
 
 def jacket_ring(r: Radii) -> Profile:

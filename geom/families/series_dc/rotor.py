@@ -22,8 +22,14 @@ def rotor(g: Geometry, z: Axial) -> tuple[Part, ...]:
     inner = extrude(wires, z.core0, z.core1)
     left = (*extrude(wires, z.coil0, z.core0), (ends, z.ring0, z.coil0))
     right = (*extrude(wires, z.core1, z.coil1), (ends, z.coil1, z.ring1))
+    steps = (
+        (g.shaft.bearing_diameter, 0.0, z.inner0),
+        (g.shaft.core_diameter, z.inner0, z.ring1),
+        (g.shaft.hub_diameter, z.ring1, z.bars1),
+        (g.shaft.bearing_diameter, z.bars1, z.end),
+    )
     return (
-        _shaft(g, z),
+        Part("shaft", "steel", tuple((shapes.disc(d / 2), z0, z1) for d, z0, z1 in steps), role=Role.SHAFT),
         Part("rotor.core", "electrical-steel", ((_lamination(g, r, angles), z.core0, z.core1),), role=Role.ROTOR),
         Part("slot.liner", "slot-liner", extrude(liners, z.core0, z.core1), role=Role.INSULATION, turns=True),
         _winding("winding.armature", "winding", inner, (g.rotor.fill, g.rotor.impregnation)),
@@ -41,16 +47,6 @@ def _lamination(g: Geometry, r: Radii, angles: list[float]) -> Profile:
     ducts = shapes.turned(shapes.disc(g.rotor.duct_diameter / 2, duct_circle(g, r)), shapes.evenly(g.rotor.ducts))
     loop = shapes.slotted_loop(r.rotor, g.rotor.slot_width, r.slot_bottom, angles)
     return Profile(loop, (shapes.circle_loop(g.shaft.core_diameter / 2), *(duct.outer for duct in ducts)))
-
-
-def _shaft(g: Geometry, z: Axial) -> Part:
-    steps = (
-        (g.shaft.bearing_diameter, 0.0, z.inner0),
-        (g.shaft.core_diameter, z.inner0, z.ring1),
-        (g.shaft.hub_diameter, z.ring1, z.bars1),
-        (g.shaft.bearing_diameter, z.bars1, z.end),
-    )
-    return Part("shaft", "steel", tuple((shapes.disc(d / 2), z0, z1) for d, z0, z1 in steps), role=Role.SHAFT)
 
 
 def duct_circle(g: Geometry, r: Radii) -> float:

@@ -10,7 +10,7 @@ import pytest
 from random_networks import built, machine
 
 from extras.export.c_code import c_files
-from extras.export.cli import export
+from extras.export.commands.export import export
 from extras.export.drive import AGREES_K, Compiled, difference
 from extras.export.model import Output, packed
 from lumped.correlations.ducts import duct_film

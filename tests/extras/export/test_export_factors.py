@@ -20,9 +20,8 @@ from lumped.machine.air import Stirred
 from lumped.machine.bases import Switched
 from lumped.sources.inverter import InverterLoss, PulseLoss
 from lumped.sources.layer_loss import by_dowell
-from lumped.sources.loss_laws import BrushLoss, CopperLoss, EddyLoss, IronLoss, PowerLoss, RippleLoss
+from lumped.sources.loss_laws import BrushLoss, CopperLoss, EddyLoss, IronLoss, MeasuredLoss, PowerLoss, RippleLoss
 from lumped.sources.loss_map import MapLoss
-from lumped.sources.loss_measured import MeasuredLoss
 from lumped.transfer.exchanger import Exchanger, Flow
 from lumped.transfer.laws import CONSTANT, AtUsualTemperature, Fixed, InputPower, Law, Power, Scaled, WithTemperature
 from lumped.transfer.properties import water

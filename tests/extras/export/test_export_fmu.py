@@ -12,7 +12,7 @@ from small_case import small_case
 from test_export_code import curved, states
 
 from extras.export.c_code import RUNTIME
-from extras.export.cli import export
+from extras.export.commands.export import export
 from extras.export.compilers import here
 from extras.export.document import document, mat
 from extras.export.drive import AGREES_K, sampled, signals_of

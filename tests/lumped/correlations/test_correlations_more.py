@@ -10,8 +10,8 @@ from numpy.testing import assert_allclose
 
 from lumped.correlations import RangeWarning, air_gap, contacts, ducts, natural, rotating
 from lumped.correlations.bearings import brush_friction, kylander_bearing, skf_friction
+from lumped.correlations.contacts import coaxial_discs, parallel_rectangles
 from lumped.correlations.fins import heiles, heiles_decaying, mean_of_decay, straight_decay
-from lumped.correlations.views import coaxial_discs, parallel_rectangles
 from lumped.transfer.properties import air
 
 

@@ -6,7 +6,7 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from extras.bench.cli import protocol
+from extras.bench.commands.protocol import protocol
 from extras.bench.measuring.protocol import protocol as judged
 from extras.bench.measuring.record_file import read_record
 from geom.errors import InputError

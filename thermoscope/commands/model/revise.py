@@ -17,7 +17,7 @@ from measured.sensors.faults import broken_channels
 from thermoscope.case_folder.columns import checked_columns, write_columns
 from thermoscope.case_folder.folder import Folder
 from thermoscope.case_folder.history import Revision, save_history
-from thermoscope.case_folder.runs import at_revision, by_interest, ends, finding_words, mean_rows
+from thermoscope.case_folder.runs import at_revision, by_interest, effects_first, ends, finding_words, mean_rows
 from thermoscope.commands.open_case import open_case_for_writing
 from thermoscope.commands.stored_diagnosis import current_diagnosis
 from thermoscope.console.options import Anyway, Case, Effect, Effects, Json
@@ -160,12 +160,6 @@ def evidence(folder: Folder, result: revise.Revision) -> dict[str, float | str]:
     return {key: rows[0][key] for key in ("probability", "score", "threshold", "decision")} if rows else {}
 
 
-def telling(p: Mapping[str, Any]) -> tuple[bool, bool, float]:
-    """Sorts the effects' own sizes first, then their exponents, then what lies farthest from its prior."""
-    low, high = p["prior"][1:]
-    return "@" not in p["name"], "^" in p["name"], -abs(p["value"] - p["prior"][0]) / max(high - low, 1e-300)
-
-
 def in_words(p: Mapping[str, Any]) -> dict[str, Any]:
     """A parameter as an engineer says it, and the one that it trades with."""
     return {**p, "name": value_words(p["name"]), "partner": p["partner"] and value_words(p["partner"])}
@@ -215,7 +209,7 @@ def _outcome_words(document: Mapping[str, Any]) -> list[str]:
 
 
 def _fixed(parameters: Sequence[Mapping[str, Any]]) -> Table:
-    identifiable = sorted((p for p in parameters if p["identified"] and not p["of_measurement"]), key=telling)
+    identifiable = sorted((p for p in parameters if p["identified"] and not p["of_measurement"]), key=effects_first)
     return parameters_table("What the data fixed (95 %)", map(in_words, identifiable))
 
 

@@ -32,8 +32,7 @@ from measured.importing.source import Source, signature
 from measured.importing.starter import FirstNetwork, of_machine, place_of, starter
 from measured.importing.target import Target, measure_of, target_of
 from measured.recordings.invalid_readings import coded
-from thermoscope.commands.pairs import read_pairs
-from thermoscope.console.options import Json
+from thermoscope.console.options import Json, read_pairs
 from thermoscope.console.summary import Summary, sentences
 from thermoscope.console.terminal import Progress, give, notes, progress
 from thermoscope.parts import message as missing_extra

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
 from hidden.truth import faults, foreign
 from hidden.truth.archetype import Archetype, Hidden, Plan, Spot
@@ -83,7 +82,8 @@ def films(s: Skeleton, d: Draw) -> list[Film]:
 
     long = np.array([9, 8, 7, 6, 5, 5, 4, 3, 2, 1, 0])  # air enters at position 1
     walls = (("armature", 0.2, 80.0), ("field", 0.15, 60.0), ("poles", 0.1, 60.0), ("yoke", 0.12, 30.0))
-    out = [_along(s, name, air[long], A / 11, blown(h0)) for name, A, h0 in walls]
+    # Eleven cells on ten of air: the middle two share one.
+    out = [Film(name, s.cells(name), air[long], np.full(11, A / 11), blown(h0)) for name, A, h0 in walls]
     out += [Film("commutator", s.cells("commutator"), air[[2, 1, 1, 0]], np.full(4, 0.05 / 4), blown(90.0))]
     for end, cell in (("de", 9), ("nde", 0)):
         inner = s.cells(f"flange.{end}")[2:]
@@ -91,11 +91,6 @@ def films(s: Skeleton, d: Draw) -> list[Film]:
     g = 2e-3 / d.factor("gap", 0.15)
 
     return [*out, *outside(s, d), across_gap(s, "core", "poles", 0.1, 0.1, g)]
-
-
-def _along(s: Skeleton, body: str, air: NDArray[np.int64], area: float, h) -> Film:
-    """Eleven cells on ten of air: the middle two share one."""
-    return Film(body, s.cells(body), air, np.full(11, area), h)
 
 
 def outside(s: Skeleton, d: Draw) -> list[Film]:
