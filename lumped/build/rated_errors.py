@@ -6,6 +6,7 @@ import hashlib
 import json
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, replace
+from functools import cached_property
 from math import log
 from types import MappingProxyType
 from typing import TYPE_CHECKING
@@ -159,7 +160,7 @@ class Reader:
         a, b = self.read(one), self.read(other)
         return {name: abs(a[name] - b[name]) for name in a}
 
-    @property
+    @cached_property
     def rows(self) -> dict[str, Array]:
         return {name: self._row(name, place) for name, place in self.looks.places.items()}
 
