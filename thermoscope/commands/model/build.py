@@ -52,7 +52,7 @@ def build_machine(machine: str, out: Path | None, target: str | None, accuracy: 
             return check_cad(source)
 
         both: list[Callable[[], Any]] = [lambda: crosscheck.checked(built, size, tell), export_solids]
-        checked, solids = in_two_processes(lambda one: one(), both, size.mesh.unknowns if size and size.mesh else 0)
+        checked, solids = in_two_processes(lambda one: one(), both, built.field.n)
         document = {**described_as(built, solids), **checked, **({} if size is None else {"sizes": size.document()})}
         crosscheck.save(document, folder)
         document["pictures"] = [str(file) for file in pictures(built, folder, tell)]
