@@ -34,8 +34,8 @@ def side_by_side(
     temperatures of parts go on between them.
     """
     varying = [j for j, cells in enumerate(columns) if any(cell != cells[0] for cell in cells)]
-    instants = {j for j in varying if all(is_date(cell) or is_clock(cell) for cell in columns[j][:LEAST])}
-    times = [j for j in varying if is_time(names[j]) or j in instants]
+    of_clocks = {j for j in varying if all(is_date(cell) or is_clock(cell) for cell in columns[j][:LEAST])}
+    times = [j for j in varying if is_time(names[j]) or j in of_clocks]
     times = times or [j for j in varying if unit_of(names[j]) in TIMES]  # beside a clock "min" is the least
     ids = [j for j, name in enumerate(names) if {"id", *SERIES} & {*tokens(name)} > {"id"}]  # sensor_id
     numbered = [j for j in ids if all(map(is_reading, columns[j]))]
@@ -83,8 +83,8 @@ def side_by_side(
         what = f"holds a row for every reading of {len(series)} signals ('{names[key]}'), each at its own times"
         instants = _in_order(dict.fromkeys(clocks), series.values())
         turns = _in_turns([*dict.fromkeys(map(_text, signals))], signals)  # one reader for all of them
-        held = "" if turns else f"; all but temperatures of parts {HOLD} of their signal"
-        notes.append(f"{Path(where).name}: {what}{held}")
+        rule = "" if turns else f"; all but temperatures of parts {HOLD} of their signal"
+        notes.append(f"{Path(where).name}: {what}{rule}")
         for signal, readings in series.items() if not turns else ():
             roles, quantities = roles_of(signal), quantities_of(signal)
             if roles[:1] not in BOUNDARIES and ("temperature" in quantities or (roles and not quantities)):
