@@ -401,7 +401,7 @@ def guess(source: Source, column: str, target: Target) -> Guess:
     if heater and f"T{heater[1]}" in source.labels.values():
         label = f"heater {heater[1]}"
     if not (unit_text or quantities_of(label)) and "load" in tokens(label):
-        label = f"{label} usage"
+        label = f"{label} share"
     unit = unit_of(unit_text) or _called_unit(label)
     quantity, why, doubt = _by_values(source, column) if source.unnamed else _quantity(label, unit, target)
     if not quantity:
