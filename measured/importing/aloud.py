@@ -22,6 +22,7 @@ from measured.importing.guess import (
     CERTAIN,
     CODES_ALONE,
     ELSE,
+    FLUID_ALONE,
     HARDLY,
     NO_UNIT,
     NUMBERED,
@@ -53,7 +54,7 @@ UNIT = re.compile(rf"{NO_UNIT}: (\S+) is assumed")
 NO_INLET = "taken as the coolant that flows in, though its name says no inlet"
 OUTLET = "it warms with the machine: an outlet?"
 SHEETS = "tests/*.toml"  # where each column has its doubt
-PLACES = (NO_PART, NUMBERED, BY_READINGS, AS_WINDING)
+PLACES = (NO_PART, NUMBERED, BY_READINGS, AS_WINDING, FLUID_ALONE)
 WEAK = (
     *(NO_PART, NUMBERED, BY_READINGS, AS_WINDING, HARDLY, WHOLE, BY_LETTERS, OF_INSTRUMENT, OF_DEVICE, OF_TESTED),
     *(AS_SPEED, "gives coolant already"),

@@ -168,13 +168,17 @@ def tests_of(source: Source) -> list[Source]:
         whole = replace(source, labels=dict(zip(new, new, strict=True)), units=units)
         rows = [np.flatnonzero(np.isfinite(clock.seconds)) for clock in clocks if clock]
         return [_part(replace(whole, cells=cells), some, note) for cells, some in zip(parts, rows, strict=True)]
-    each = sum("temperature" in quantities_of(label) for label in source.labels.values()) > 1  # no sensor's alone
-    words = {n: np.array([*map(str, source.cells[n])]) for n in source.cells if each and not source.is_numeric(n)}
+    kinds = [q for label in source.labels.values() for q in quantities_of(label)[:1]]
+    each = "temperature" in kinds and len(kinds) > 1  # no sensor's alone
+    ids = [n for n in source.cells if not source.is_numeric(n) or {"id", "index"} & {*tokens(n)}]
+    words = {n: np.array([*map(str, source.cells[n])]) for n in ids if each}
     words = {n: w for n, w in words.items() if 1 < len({*w.tolist()}) <= MACHINES}
     clock = _guessed_clock(source) if words else None
     for name, of in words.items() if clock is not None and not (np.diff(clock.seconds) > 0).all() else ():
         rows = [np.flatnonzero(of == word) for word in dict.fromkeys(of.tolist())]
-        if clock and all(r.size >= FEWEST and (np.diff(clock.seconds[r]) > 0).all() for r in rows):
+        times = [clock.seconds[r] for r in rows] if clock else []
+        enough = all(t.size >= FEWEST for t in times) or all(np.array_equal(t, times[0]) for t in times)
+        if enough and all((np.diff(t) > 0).all() for t in times):
             return [_part(source, some, f"a test from the rows of each of {len(rows)} '{name}'") for some in rows]
     return [source]
 
@@ -580,9 +584,11 @@ def _numeric(source: Source) -> Clock | None:
         return Clock(source.numbers(TIME), source.start, (TIME,), "the format's own time")
     if candidates or TIME in by_name:
         return _scaled(source, candidates[0] if candidates else TIME)
-    if source.unnamed and (rises(source, numeric[0]) or _since_1970(source, numeric[0])):
-        return _scaled(source, numeric[0])
-    cells = {c: source.numbers(c).tobytes() for c in numeric if rises(source, c)}
+    first = numeric[0] if source.unnamed and numeric else ""
+    if first and (rises(source, first) or _since_1970(source, first)):
+        return _scaled(source, first)
+    plain = [c for c in numeric if rises(source, c) and unit_of(source.units[c]) in ("", *TIME_UNITS)]
+    cells = {c: source.numbers(c).tobytes() for c in plain}
     repeated = [c for c in cells if [*cells.values()].count(cells[c]) > 1]  # one clock beside every signal
     repeated += [c for c in cells if UNNAMED.fullmatch(c)]  # an index
     return _scaled(source, repeated[0]) if repeated and source.period_s is None else None
@@ -601,7 +607,8 @@ def _unit_of_time(source: Source, column: str) -> str:
     for text in (source.units[column], source.labels[column]):
         if (unit := unit_of(text)) in TIME_UNITS:
             return unit
-    return "ms" if {*tokens(source.labels[column])} & {*MILLISECONDS} else ""  # ms_today
+    label = source.labels[column]
+    return "ms" if {*tokens(label)} & {*MILLISECONDS} else "s" if label == "X_Value" else ""  # ms_today; of LabVIEW
 
 
 def is_second_clock(source: Source, column: str) -> bool:

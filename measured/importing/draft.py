@@ -9,6 +9,7 @@ from pathlib import Path
 import numpy as np
 
 from geom.description.names import cut_short
+from geom.errors import InputError
 from measured.headers.words import axis_of
 from measured.importing.aligned import Recording
 from measured.importing.guess import AXES, Guess, in_memory
@@ -87,10 +88,14 @@ def coldest_start(draft: Draft) -> float:
 
 def sample_of(drafts: Sequence[Draft]) -> float:
     """Step of the analysis (s): the recorder's own, or a round number that leaves INSTANTS of the longest test."""
-    needed = max(max(d.step_s for d in drafts), max(d.span_s for d in drafts) / INSTANTS)
+    step_s = max(d.step_s for d in drafts)
+    if step_s > LONGEST_STEP_S:
+        what = f"its rows are {step_s:g} s apart, too far to see a machine warm"
+        raise InputError(what, drafts[0].records[0].name, f"rows at most {LONGEST_STEP_S:g} s apart")
+    needed = max(step_s, max(d.span_s for d in drafts) / INSTANTS)
     scale = 10.0 ** np.floor(np.log10(needed))
     steps = [n * scale for n in (*NICE, 10)]
-    return min(float(f"{next(s for s in steps if s >= needed * (1 - 1e-6)):.6g}"), max(needed, LONGEST_STEP_S))
+    return min(float(f"{next(s for s in steps if s >= needed * (1 - 1e-6)):.6g}"), LONGEST_STEP_S)
 
 
 def test_name(file: Path, names: Sequence[str]) -> str:

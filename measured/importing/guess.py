@@ -26,6 +26,7 @@ from measured.headers.words import (
     MEAN,
     MODELLED,
     NOTHING,
+    OIL,
     OUTER,
     PATH,
     PUMP,
@@ -117,6 +118,7 @@ AS_WINDING = "taken as the winding"
 FASTEST, OF_STATOR = (f"{why}: {AS_WINDING}" for why in ("follows the heat fastest", "of the stator"))
 AS_TORQUE = "starts where no temperature does, beside a speed: taken as a torque in N*m"
 AS_ROOM = "taken as the room, as no other column is: is the machine in there?"
+FLUID_ALONE = "of a coolant by its name; taken as a part, as no other column is"
 INDOORS = "a room beside the air outside: taken as a part"
 AS_FLOW = "the speed of a fan: taken as a flow, of which only the changes count"
 ON_OFF = "on and off, by its values alone: heat, cooling, or neither?"
@@ -128,7 +130,7 @@ AS_SPEED = "no speed was recorded: the frequency of the supply, as of one pole p
 OF_SUPPLY = "the frequency of the supply: the speed beside it says as much"
 LARGEST_HZ = 1000.0  # of a supply; inverters for motors switch faster
 QUICK = 0.6  # of the fastest: windings of the same machine
-FULL = 100.0  # of a fan or a pump without a unit, which stood still before
+FULL = (100.0, 255.0, 1023.0, 4095.0)  # of a fan, a pump or a heater that was off: percent, 8, 10 or 12 bits
 PERCENT = 130.0  # of a load, at most
 MANUAL = "left out by hand"
 OF_USER = "the user"  # how a column was told that the user placed
@@ -190,7 +192,7 @@ def _by_readings(source: Source, every: list[Guess], target: Target) -> list[Gue
     firsts = [v[np.isfinite(v)][:FIRST_ROWS] for g in hot for v in [in_memory(source, g)]]
     starts = [float(np.median(v)) for v in firsts if v.size]
     every = [_read_as(source, g, starts, target) if g.doubt == UNTOLD or g.why == "name" else g for g in every]
-    series = {_stem(source.labels[g.column]): source.finite(g.column) for g in every if g.why == "readings"}
+    series = {_stem(source.labels[g.column]): source.finite(g.column) for g in every if g.why in ("readings", "values")}
     for i, g in enumerate(every):  # the others of a row of numbered ones, which jump, or hardly move
         if g.doubt == UNTOLD and (one := series.get(_stem(label := source.labels[g.column]))) is not None:
             values = source.finite(g.column)
@@ -398,6 +400,8 @@ def guess(source: Source, column: str, target: Target) -> Guess:
     heater = HEATER.fullmatch(label) if not unit_text else None
     if heater and f"T{heater[1]}" in source.labels.values():
         label = f"heater {heater[1]}"
+    if not (unit_text or quantities_of(label)) and "load" in tokens(label):
+        label = f"{label} share"
     unit = unit_of(unit_text) or _called_unit(label)
     quantity, why, doubt = _by_values(source, column) if source.unnamed else _quantity(label, unit, target)
     if not quantity:
@@ -408,7 +412,7 @@ def guess(source: Source, column: str, target: Target) -> Guess:
         return Guess(column, "", doubt="counts the rows")
     whole = {*values[np.isfinite(values)].tolist()} <= {*range(STATES)}
     flows = is_of_flow(label) or Role.COOLANT in roles_of(label)  # what a fan, a pump or a cooler does
-    if flows and not worded and whole and (is_stage(label) or np.nanmax(values) <= 1):
+    if flows and not worded and whole and (is_stage(label) or AIR in quantities_of(label) or np.nanmax(values) <= 1):
         return _fed(Guess(column, "flow_share", "1", why="name", doubt=STAGES), label, target)
     flag = why == "unit" and quantity not in SWITCHED and {*values[np.isfinite(values)]} <= {0.0, 1.0}
     still = not unit_text and np.nanmax(values) == np.nanmin(values)  # temperature_source
@@ -417,8 +421,9 @@ def guess(source: Source, column: str, target: Target) -> Guess:
     of_fan = quantity == "speed" and AIR in quantities_of(label) and not is_spoken(label, MACHINE)
     if of_fan and target.input_of(label, quantity) in ("", INPUTS["speed"]):
         quantity, unit, doubt = "flow_share", "%", AS_FLOW
-    if quantity in (AIR, LIQUID) and not unit and (np.nanmin(values), np.nanmax(values)) == (0.0, FULL):
-        quantity = "flow_share"
+    if quantity in (AIR, LIQUID, "power") and not unit and np.nanmin(values) == 0.0:
+        shares = {AIR: FULL, LIQUID: FULL, "power": FULL[1:]}[quantity]  # 100 W is a power
+        quantity = ("share" if quantity == "power" else "flow_share") if np.nanmax(values) in shares else quantity
     unit, assumed = _unit(source, column, quantity, unit)
     if not unit_text and (match := FOREIGN.search(label) or ROUND.search(label)) and quantity != "temperature":
         if quantity == "speed" and not set(tokens(match[1])) & REMARK_WORDS:  # of a vehicle, or a counter
@@ -576,7 +581,8 @@ def _quantity(label: str, unit: str, target: Target) -> tuple[str, str, str]:
         if not both and of_unit[0] in ("power", "torque") and by_name[:1] in (["power"], ["torque"]) and len(label) > 2:
             doubt = f"by its name a {by_name[0]}"
         return (both or of_unit)[0], SUREST if both else "unit", doubt
-    if (feeds := target.input_of(label, "")) and (quantity := target.inputs[feeds]) in (by_name or [quantity]):
+    feeds = "" if target.places_by_header else target.input_of(label, "")
+    if feeds and (quantity := target.inputs[feeds]) in (by_name or [quantity]):
         return quantity, f"name like the input {feeds}", ""
     if (roles_of(label) or is_spoken(label, SPOT)) and by_name in ([], ["temperature"], ["vehicle_speed"]):
         weak = not any(is_spoken(label, terms) for terms in (*ROLES.values(), SPOT))
@@ -604,7 +610,9 @@ def _by_values(source: Source, column: str) -> tuple[str, str, str]:
     low, high = float(np.min(values)), float(np.max(values))
     smooth = np.max(np.abs(np.diff(values))) < 0.2 * max(high - low, 1e-9) + 1.0
     absolute = KELVIN[0] < float(np.median(values)) < KELVIN[1]
-    celsius = UNNAMED[0] < low and high < UNNAMED[1] and np.unique(values).size > 0.1 * values.size
+    different = np.unique(values).size  # states are few, and whole numbers
+    many = different > 0.1 * values.size or (different > LEAST and bool((values % 1 != 0).any()))
+    celsius = UNNAMED[0] < low and high < UNNAMED[1] and many
     if not (smooth and (absolute or celsius)):
         return "", "", ""
     return "temperature", "values", f"no name: {BY_READINGS}"
@@ -651,6 +659,8 @@ def _placed(base: Guess, label: str, target: Target) -> Guess:
     room = HARDLY if by_header and place == "ambient" and not roles else ""
     if by_header and roles == [Role.AMBIENT] and place not in target.boundaries and target.boundaries:
         room = INDOORS
+    if by_header and roles == [Role.COOLANT] and place not in target.boundaries and not is_spoken(label, OIL):
+        room = FLUID_ALONE
     doubt = f"or {other}" if other else room or (NUMBERED if weak else base.doubt or whole)
     return replace(base, place=place, doubt=doubt)
 
@@ -663,7 +673,7 @@ def is_whole(label: str) -> bool:
 def _fed(base: Guess, label: str, target: Target) -> Guess:
     if base.quantity in ELSEWHERE:
         return base.without(f"a {base.quantity} needs more than its unit: docs/how-to/thermal-test.md")
-    name = target.input_of(label, base.quantity)
+    name = target.inputs_by_column.get(base.column) or target.input_of(label, base.quantity)
     return replace(base, feeds=name or QUANTITIES[base.quantity].feeds)
 
 

@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 
 from geom.description.roles import Role
-from measured.headers.cells import EMPTY, TIMES, is_date, is_reading, is_unit, number, split_unit, unit_of
+from measured.headers.cells import EMPTY, TIMES, is_clock, is_date, is_reading, is_unit, number, split_unit, unit_of
 from measured.headers.layout import MISSING
 from measured.headers.words import RUNS, VOCABULARY, is_time, quantities_of, roles_of, tokens
 
@@ -34,7 +34,8 @@ def side_by_side(
     temperatures of parts go on between them.
     """
     varying = [j for j, cells in enumerate(columns) if any(cell != cells[0] for cell in cells)]
-    times = [j for j in varying if is_time(names[j]) or all(map(is_date, columns[j][:LEAST]))]
+    of_clocks = {j for j in varying if all(is_date(cell) or is_clock(cell) for cell in columns[j][:LEAST])}
+    times = [j for j in varying if is_time(names[j]) or j in of_clocks]
     times = times or [j for j in varying if unit_of(names[j]) in TIMES]  # beside a clock "min" is the least
     ids = [j for j, name in enumerate(names) if {"id", *SERIES} & {*tokens(name)} > {"id"}]  # sensor_id
     numbered = [j for j in ids if all(map(is_reading, columns[j]))]
@@ -81,8 +82,10 @@ def side_by_side(
     if any(not readings.keys() <= set(instants) for readings in series.values()):
         what = f"holds a row for every reading of {len(series)} signals ('{names[key]}'), each at its own times"
         instants = _in_order(dict.fromkeys(clocks), series.values())
-        notes.append(f"{Path(where).name}: {what}; all but temperatures of parts {HOLD} of their signal")
-        for signal, readings in series.items():
+        turns = _in_turns([*dict.fromkeys(map(_text, signals))], signals)  # one reader for all of them
+        rule = "" if turns else f"; all but temperatures of parts {HOLD} of their signal"
+        notes.append(f"{Path(where).name}: {what}{rule}")
+        for signal, readings in series.items() if not turns else ():
             roles, quantities = roles_of(signal), quantities_of(signal)
             if roles[:1] not in BOUNDARIES and ("temperature" in quantities or (roles and not quantities)):
                 continue
@@ -113,11 +116,19 @@ def _in_order(instants: Iterable[tuple[Any, ...]], series: Iterable[Iterable[Any
 
 
 def _are_signals(cells: Sequence[Any]) -> bool:
-    """Do most of its words say what a signal reads, and do they take turns or begin anew, as no state does?"""
+    """Do most of its words say what a signal reads, and do they take turns or begin anew, as no state does?  Any words
+    that come in one order all the time are names."""
     words = [*dict.fromkeys(map(_text, cells))]
+    if _in_turns(words, cells):
+        return True
     spoken = sum(bool(quantities_of(word) or roles_of(word)) for word in words)
     turns = sum(a != b for a, b in itertools.pairwise(cells))
     return len(words) > 2 and 2 * spoken > len(words) and (turns > len(cells) / 2 or turns == len(words) - 1)
+
+
+def _in_turns(words: Sequence[str], cells: Sequence[Any]) -> bool:
+    """Do several words come in one order all the time?"""
+    return len(words) > 2 and all(_text(cell) == words[i % len(words)] for i, cell in enumerate(cells))
 
 
 def _text(cell: Any) -> str:

@@ -209,7 +209,7 @@ def misfit(seconds: Array, rise: Array, heat: Array, exponent: float) -> float:
     t, y, u = (v[good][rows] for v in (seconds, rise, np.abs(heat) ** exponent))
     if y.size < COARSE or not float(np.ptp(u)) > 0.0:
         return float(np.std(y)) if y.size else np.inf
-    step = float(np.median(np.diff(t)))
+    step = float(np.median(np.diff(np.unique(t))))  # rows may share their instant
     shares = -np.expm1(-step / np.geomspace(3.0 * step, max(float(t[-1] - t[0]), 10.0 * step), LAGS))
     table = [lfilter([a], [1.0, a - 1.0], u / u.max()) for a in shares]
     table += [np.exp(np.log1p(-a) * np.arange(y.size)) for a in shares[LAGS // 2 :]]  # what it started with

@@ -261,7 +261,8 @@ def source_of_table(
     names = _once(_plain(plan.names))
     beside, doubts = side_by_side(names, columns, str(file))
     if beside:
-        return _source(file, list(beside), list(beside.values()), {}, [*doubts, *notes])
+        unnamed &= not any(roles_of(name) or quantities_of(name) for name in beside)
+        return replace(_source(file, [*beside], [*beside.values()], {}, [*doubts, *notes]), unnamed=unnamed)
     doubts = [f"{file.name}: no header; columns are called after their number"] * unnamed
     doubts += [f"{file.name}: {plan.preamble} lines before the header are left out"] * bool(plan.preamble)
     source = _source(file, names, columns, dict(zip(names, plan.units, strict=True)), [*doubts, *notes])

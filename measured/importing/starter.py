@@ -146,9 +146,12 @@ def of_machine(columns: Columns) -> Columns:
     if inside < rooms and not any(roles_of(label := s.labels[g.column]) or is_whole(label) for s, g in parts):
         columns = _as_parts(columns, inside)
     columns = _as_parts(columns, _warmed_oil(every))
+    if all(place in ("", *BOUNDARIES.values()) for *_, place in every):
+        fluids = {s.labels[g.column] for s, g, place in every if place == "coolant" and not g.place}
+        columns = _as_parts(columns, {label for label in fluids if not is_spoken(label, INLET)})
     if any(place == "ambient" and not _leaves(s, g) for s, g, place in every):
         return _without_exhaust(columns)
-    if len(parts) < 2 or any(g.why == "values" for _, g, place in every):
+    if len({g.column for _, g in parts}) < 2 or any(g.why == "values" for _, g, place in every):
         return columns
     starts = [float(v[np.isfinite(v)][0]) for v in (in_memory(*part) for part in parts) if np.isfinite(v).any()]
     coldest, most = float(np.median(starts)) + COLD_K, STILL * max(rise(*part) for part in parts)
@@ -201,7 +204,8 @@ def starter(columns: Columns, name: str, span_s: float) -> FirstNetwork:
     hot = [(source, g, place) for source, g, place in places if place and place not in BOUNDARIES.values()]
     if not hot:
         files = ", ".join(dict.fromkeys(str(source.file) for source, _ in columns))
-        lost = [g for s, g in columns if g.doubt == OF_INSTRUMENT or (g.doubt and roles_of(s.labels[g.column]))]
+        doubted = [(g, s.labels[g.column]) for s, g in columns if g.doubt]
+        lost = [g for g, n in doubted if g.doubt == OF_INSTRUMENT or roles_of(n) or "temperature" in quantities_of(n)]
         lost.sort(key=lambda g: g.doubt != OF_INSTRUMENT)
         doubts = (f"; '{g.column}' is left out: {g.doubt}" for g in lost if not g.feeds)
         what = "no column is a temperature of a machine" + next(doubts, "")

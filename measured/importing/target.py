@@ -29,12 +29,14 @@ class Target:
     """places : where a sensor may sit -> what it is;  boundaries, inputs alike (inputs -> what they measure)
 
     places_by_header : header without its unit -> its place, of a network that was made from the headers
+    inputs_by_column : column -> what it feeds, of such a network
     """
 
     places: Mapping[str, Role | None] = field(default_factory=dict)
     boundaries: Mapping[str, Role | None] = field(default_factory=dict)
     inputs: Mapping[str, str] = field(default_factory=dict)
     places_by_header: Mapping[str, str] = field(default_factory=dict)
+    inputs_by_column: Mapping[str, str] = field(default_factory=dict)
 
     def place_of(self, label: str) -> tuple[str, str]:
         """The place or boundary a name means and what it could be as well, "" where nothing fits."""

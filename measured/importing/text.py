@@ -48,8 +48,12 @@ LOGGED = re.compile(rf"^(\d\S*[ T]\d\d:\S+|\d+:\d\d:\S+)(?=\s)[^=\n]*?((?:\s{PAI
 POINT = re.compile(r"^([^\s=,]+(?:,\S+=\S+)?) ([^\s=,]+=\S+?)[iu]? (\d{10,19})(?=\r?$)", re.MULTILINE)  # a,b=c d=5i 17
 TITLE = re.compile(r"(?:.*\.)?_*(?:name|label|channel|signal|title|target)_*")  # of a signal in JSON: metric.__name__
 UNITS = ("unit", "units")
-# A serial monitor's time before each line, or one in brackets.
-ARROW = re.compile(r"^(?:(\d{1,2}:\d{2}:\d{2}[.,]\d+) -> |\[\s*(\d[\d:.,]*)\]:?\s+)", re.MULTILINE)
+# A serial monitor's time before each line, one in brackets, or one with a date and a blank before cells with signs.
+ARROW = re.compile(
+    r"^(?:(\d{1,2}:\d{2}:\d{2}[.,]\d+) -> |\[\s*(\d[\d:.,]*)\]:?\s+"
+    r"|(\d{1,4}[-/.]\d{1,2}[-/.]\d{1,4} \d{1,2}:\d\d(?::\d\d)?)\s+(?=[-+]?\d\S*(?:[;|\t]|,\s)))",
+    re.MULTILINE,
+)
 FORTRAN = re.compile(r"(?<=[.\d]\d)[Dd](?=[-+]\d\d\b)")  # 2.4D+01
 KEYED = re.compile(r"\s*([^\W\d][^:=,;\t]*?)\s*[:=]\s*(\S.*)")
 BOTH_SIGNS = re.compile(r"(?<![\d.:/-])\d+\.\d+(?![\d.:/-])")  # a number with a point, which is not a date
@@ -122,9 +126,10 @@ def text_table(file: Path) -> tuple[Layout, Columns, list[str], float | None]:
         notes += [unlike] * (len(readings) < len(every))
         return Layout(tuple(keys), ("",) * len(keys), 0, len(keys)), _raw(readings, len(keys)), notes, None
     plan = layout(cells, str(file))
-    if sign == "  " and not any(plan.names):  # names with one blank between them over columns with several
-        single = layout(split_cells(head, " "), str(file))
-        plan, sign = (single, " ") if single.width == plan.width and any(single.names) else (plan, sign)
+    if not any(plan.names):  # names parted by another sign than the readings, or by one blank where those have several
+        lines_over = [bare for line in head[: plan.first] if (bare := line.strip("#%/ \n"))]
+        others = (split_cells([line], s)[0] for line in lines_over for s in (*DELIMITERS, " "))
+        plan = replace(plan, names=next((tuple(o) for o in others if len(o) == plan.width and all(o)), plan.names))
     interval_s = _interval("".join(itertools.islice(rows, plan.first)))
     least, short = _whole(cells[plan.first :] if rows is lines and sign in DELIMITERS else [])
     notes += [f"{file.name}: {short}"] * bool(short)
@@ -144,7 +149,7 @@ def text_table(file: Path) -> tuple[Layout, Columns, list[str], float | None]:
 def _parted(line: str) -> str:
     """A line with its sign between cells behind the time before it too."""
     sign = next((s for s in DELIMITERS if s in line), "\t")
-    return ARROW.sub(lambda match: f"{match[1] or match[2]}{sign}", line)
+    return ARROW.sub(lambda match: f"{match[match.lastindex or 0]}{sign}", line)
 
 
 def _logged(line: str) -> str:

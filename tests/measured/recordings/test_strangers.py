@@ -965,3 +965,107 @@ def test_lines_of_a_time_series_database(tmp_path):
     assert (clock.start, clock.end_s) == (1774697470, S["t"][-1])
     assert source.numbers("winding_degC") == pytest.approx(S["W"], abs=0.006)
     assert source.numbers("turns") == pytest.approx(np.arange(len(S["t"])))
+
+
+def of_lines(tmp_path, lines, **wishes):
+    """As `written`, of lines."""
+    return written(tmp_path, "\n".join(lines) + "\n", **wishes)
+
+
+def goes(document):
+    """Column -> where it goes, of those used in the first test."""
+    return {c["column"]: c["place"] or c["feeds"] for c in document["tests"][0]["columns"] if c["place"] or c["feeds"]}
+
+
+def test_a_date_and_a_blank_before_cells_with_signs(tmp_path):
+    stamps = [datetime.fromtimestamp(1762157670 + t, UTC).strftime("%m/%d/%Y %H:%M:%S") for t in S["t"]]
+    (tmp_path / "a.txt").write_text("".join(f"{at} {w:.2f}C, {h:.2f}C\n" for at, w, h in zip(stamps, S["W"], S["H"])))
+    [(source, clock)] = read_runs(tmp_path / "a.txt")
+    assert clock.seconds == pytest.approx(S["t"])
+    assert [*source.units.values()][1:] == ["degC", "degC"]
+    assert source.numbers("column 2") == pytest.approx(S["W"], abs=0.006)
+
+
+@pytest.mark.parametrize(("names", "values"), [(";", ","), (",", ";"), ("\t", ",")])
+def test_names_may_stand_between_other_signs_than_readings(tmp_path, names, values):
+    rows = [values.join(f"{v:.2f}" for v in row) for row in zip(*(S[c] for c in "tWAI"))]
+    header = names.join(("time (s)", "Temperatura bobinado (°C)", "T ambiente (°C)", "Corriente (A)"))
+    folder, _ = of_lines(tmp_path, [header, *rows])
+    assert folder.case.tests[0].boundaries["ambient"] == pytest.approx(S["A"], abs=0.006)
+
+
+@pytest.mark.parametrize("named", [lambda k: f"M00{k}", str])
+def test_machines_of_one_table_that_were_read_at_the_same_instants_are_tests(tmp_path, named):
+    """Six rows each, one temperature, and one of them hardly warms."""
+    rows = [(k, n) for k in (1, 2, 3) for n in range(6)]
+    lines = [f"2026-03-28 {8 + n:02d}:00,{named(k)},{10 * k + n % 3},{20 + (k - 1) * n}" for k, n in rows]
+    folder, _ = of_lines(tmp_path, ["time,motor_id,current [A],temperature [C]", *lines])
+    assert [test.inputs["current_A"][0] for test in folder.case.tests] == [10.0, 20.0, 30.0]
+
+
+def test_vessels_that_one_thermometer_reads_in_turn_are_columns(tmp_path):
+    lines = [f"{10 + k // 60:02d}:{k % 60:02d}:00 {k % 3 + 1}: {20 + 60 * 0.98**k + k % 3:.1f}" for k in range(90)]
+    folder, _ = of_lines(tmp_path, lines)
+    assert [c.name for c in folder.case.tests[0].channels] == ["1:", "2:", "3:"]
+    assert not any("hold until" in note for note in read_runs(tmp_path / "a.csv")[0][0].notes)
+
+
+def test_rows_that_are_days_apart_are_refused_by_their_file(tmp_path):
+    lines = [f"2026-03-{1 + 2 * k:02d},{60 + k}" for k in range(12)]
+    with pytest.raises(InputError, match=r"172800 s apart, too far"):
+        of_lines(tmp_path, ["date,T_winding [C]", *lines])
+
+
+def test_the_x_value_of_labview_is_in_seconds(tmp_path):
+    text = table("X_Value\tT_winding [C]\tT_room [C]", 0.001 + S["t"] / 100, S["W"], S["A"], sep="\t")
+    (tmp_path / "a.lvm").write_text(text)
+    assert clock_of(read_source(tmp_path / "a.lvm")).words == "numbers in s"
+
+
+@pytest.mark.parametrize("most", [255, 1023])
+def test_whole_bytes_of_a_heater_and_a_fan_are_shares(tmp_path, most):
+    duty, steps = most * (np.arange(len(S["t"])) // 30 % 2), np.arange(len(S["t"])) // 20 % 9
+    lines = [f"{t},{h},{f},{w:.2f}" for t, h, f, w in zip(S["t"], duty, steps, S["W"])]
+    _, document = of_lines(tmp_path, ["t [s],heat,fan,T_plate [C]", *lines])
+    quantities = {c["column"]: c["quantity"] for c in document["tests"][0]["columns"]}
+    assert (quantities["heat"], quantities["fan"]) == ("share", "flow_share")
+
+
+def test_loads_beside_what_they_warm_are_shares_and_a_hot_spot_stays_a_temperature(tmp_path):
+    load = 10 * (S["I"] % 7)
+    text = table("t [s],gpu_load,ssd_load,gpu_hotspot,ssd_temp", S["t"], load, load[::-1], S["W"], S["H"])
+    _, document = written(tmp_path, text)
+    quantities = [c["quantity"] for c in document["tests"][0]["columns"]]
+    assert quantities == ["share", "share", "temperature", "temperature"]
+
+
+def test_a_flow_that_is_recorded_twice_is_no_clock(tmp_path):
+    flow = np.where(S["t"] > S["t"][-1] / 2, 8.0, 5.0)
+    text = table("Q [l/min],Q set [l/min],T_winding [C],T_room [C]", flow, flow, S["W"], S["A"])
+    (tmp_path / "a.csv").write_text(text)
+    assert clock_of(read_source(tmp_path / "a.csv")).columns == ()
+
+
+def test_without_names_readings_of_tenths_are_temperatures_and_few_whole_numbers_are_not(tmp_path):
+    room = 19.0 + 0.1 * (np.arange(90) // 20)
+    (tmp_path / "a.csv").write_text("".join(f"{v:.1f},{k // 45},3,{10 * k}\n" for k, v in enumerate(room)))
+    source = read_source(tmp_path / "a.csv")
+    assert [g.quantity for g in guesses(source, ["column 4"], Target())] == ["temperature", "share", ""]
+
+
+def test_what_leaves_a_machine_is_a_part_where_nothing_else_was_read(tmp_path, capsys):
+    text = table("t [s],water inlet [C],water outlet [C],power [W]", S["t"], S["A"], S["W"], S["I"] ** 2)
+    _, document = written(tmp_path, text)
+    assert goes(document) == {"water inlet [C]": "coolant", "water outlet [C]": "water-outlet", "power [W]": "power_W"}
+    assert "'water outlet [C]': of a coolant by its name" in " ".join(capsys.readouterr().out.split())
+
+
+def test_a_cryostat_is_refused_by_its_readings(tmp_path):
+    with pytest.raises(InputError, match=r"'T \[K\]' is left out: -27\d.* as temperature cannot be right"):
+        written(tmp_path, table("t [s],T [K],sigma_T [K]", S["t"], 0.02 + S["t"] / 1e6, S["t"] / 1e6))
+
+
+def test_columns_of_instants_alone_before_whole_numbers_end_in_a_message(tmp_path):
+    lines = [f"28.03.2026 10:00:{k:02d} {89 - 8 * (k > 2)} {93 - 10 * (k > 2)}" for k in range(7)]
+    with pytest.raises(InputError, match="neither name nor unit"):
+        of_lines(tmp_path, lines)

@@ -201,7 +201,8 @@ def first_model(read: Sequence[tuple[Source, Clock]], fixed_places: Mapping[str,
         return 'network = "network.toml"'
 
     places = {s.labels[g.column]: place for s, g in machine if (place := place_of(g, s.labels[g.column]))}
-    return Model(network, replace(target_of(network), places_by_header=places), put, first)
+    inputs = {g.column: g.feeds for _, g in machine if g.feeds in network.inputs}
+    return Model(network, replace(target_of(network), places_by_header=places, inputs_by_column=inputs), put, first)
 
 
 def _at_place(source: Source, g: Guess, place: str) -> Guess:
