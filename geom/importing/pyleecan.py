@@ -42,7 +42,6 @@ SECTIONS = {
     "Wwire": lambda c: math.pi / 4 * c["Wwire"] ** 2 * c.get("Nwppc", 1),
 }
 PLACEHOLDER = 1  # what pyleecan writes for a property of a material that nobody gave
-CAGE_METALS = (("alum", "aluminium-cast"), ("copper", "copper"), ("cu", "copper"))
 LOST = {
     "skew": "the iron is straight here",
     "yoke_notch": "the laminations are round outside",
@@ -493,7 +492,7 @@ def _cage(draft: Draft, rotor: Lamination, slot: Slot | PathSlot, copies: int, k
         draft.leave("rotor.Hscr", high, "higher than bars to shaft")
         draft.assume("geometry.rotor", "rings as high as the bars", ring_mm=in_mm(min(max(reach) - min(reach), most)))
     metal = str(_part(rotor.node, "ring_mat").get("name", "")).lower()
-    name = next((name for word, name in CAGE_METALS if word in metal), "aluminium-cast")
+    name = next((name for word, name in assumptions.CAGE_METALS if word in metal), "aluminium-cast")
     _material(draft, "rotor.cage", _part(rotor.node, "ring_mat"), f"rotor.ring_mat, {metal}", like=name)
 
 
