@@ -10,7 +10,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
-from geom.description.materials import LIMITS, material
+from geom.description.materials import LIMITS
 from geom.description.outlines import INSET, Outline, radii
 from geom.description.profile import Loop, loop_area
 from geom.errors import InputError
@@ -470,12 +470,15 @@ def _cooling(draft: Draft, file: File) -> None:
 
 def _materials(draft: Draft, file: File) -> None:
     """What parts are made of, by the file's own values; sheets are read in their plane."""
-    for part in sorted(assumptions.parts_of(draft) & _KEYS["materials"].keys()):
-        end, k = _KEYS["materials"][part]
+    kinds = {**_KEYS["materials"], **{part: ["Copper_-_Active", "k"] for part in assumptions.windings(draft)}}
+    for part in sorted(assumptions.parts_of(draft) & kinds.keys()):
+        end, k = kinds[part]
         keys = {k: f"Thermal_Conductivity_{end}", "rho": f"Density_{end}", "cp": f"Specific_Heat_{end}"}
         if part == "rotor.cage":
             keys = {k: f"Conductivity_{end}", "rho": f"Density_{end}", "cp": f"Cp_{end}"}
         values = {ours: file.number(key, *LIMITS[ours]) for ours, key in keys.items() if file.text(key).strip()}
+        if part in assumptions.windings(draft):
+            values = {f"{ours}_conductor": value for ours, value in values.items()}
         if values:
             draft.take(
                 "materials", ", ".join(keys.values()), **{part: {**(draft.value("materials", part) or {}), **values}}
@@ -516,10 +519,6 @@ def _left(draft: Draft, file: File) -> None:
         text = file.text(key)
         if text and text != str(neutral) and not (isinstance(neutral, float) and _zero(text)):
             draft.leave(key, text, why)
-    ours = material("copper").k_plane
-    k = file.number("Thermal_Conductivity_Copper_-_Active", 0.0, 1e4, ours)
-    if abs(k / ours - 1) > 0.01:
-        draft.leave("Thermal_Conductivity_Copper_-_Active", k, f"copper in windings has {ours:g} W/m/K here")
     for key, (first, second) in file.contradictions.items():
         if key in file.reads:
             draft.leave(key, second, f"stands there twice: {first} is taken")
