@@ -70,11 +70,12 @@ LIMITS = {  # from aerogel to diamond; of cp from heavy metals to wet stuffing
     "cp": (50.0, 6000.0),
     "emissivity": (0.0, 1.0),
 }
+CONDUCTOR = {"k_conductor": 385.0, "rho_conductor": 8930.0, "cp_conductor": 390.0}  # copper, of windings
 
 
 def in_limits(key: str, value: float) -> bool:
-    """Has a solid such a value of this property of Material?"""
-    low, high = LIMITS[key]
+    """Has a solid such a value of this property of Material, or a conductor of this one of CONDUCTOR?"""
+    low, high = LIMITS[key.removesuffix("_conductor")]
     return low <= value <= high
 
 
@@ -82,9 +83,9 @@ def read_entry(entry: Any, usual: str, where: str) -> tuple[str, Properties]:
     """What [materials] says of a part: a name of the table, or {like = NAME, k = ..., source = "..."}.
 
     usual : the name where the entry has no `like`.  k is both conductivities.
-    Returns the name, and (property, value, source) of what is not as in the table.
-    Raises InputError for an unknown name or property, for a value that no solid has, and for values of a winding, whose
-    properties follow from fill and impregnation.
+    Returns the name, and (property, value, source) of what is not as in the table. Of a winding only the conductor has
+    values, k_conductor (W/m/K), rho_conductor and cp_conductor: the rest follows from fill and impregnation.
+    Raises InputError for an unknown name or property, and for a value that no solid has.
     """
     if not isinstance(entry, Mapping):
         return material(entry, where).name, ()
@@ -93,15 +94,16 @@ def read_entry(entry: Any, usual: str, where: str) -> tuple[str, Properties]:
     if not isinstance(source, str):
         raise InputError(f"source = {str(source)[:40]} is not text", where, "words in quotes")
     numbers = {key: value for key, value in entry.items() if key not in ("like", "source")}
+    wound = material_table()[name].mixture is not None
+    right = f"one of: like, {', '.join(CONDUCTOR if wound else LIMITS)}, source"
     for key, value in numbers.items():
-        if key not in LIMITS:
-            raise InputError(f"unknown key {key!r}", where, f"one of: like, {', '.join(LIMITS)}, source")
+        if wound and key in LIMITS:
+            raise InputError(f"{key} of a winding", where, f"fill and impregnation in [geometry], or {right}")
+        if key not in (CONDUCTOR if wound else LIMITS):
+            raise InputError(f"unknown key {key!r}", where, right)
         if isinstance(value, bool) or not isinstance(value, int | float) or not in_limits(key, value):
-            right = "a number from {:g} to {:g}".format(*LIMITS[key])
+            right = "a number from {:g} to {:g}".format(*LIMITS[key.removesuffix("_conductor")])
             raise InputError(f"{key} = {str(value)[:40]} is not possible", where, right)
-    if numbers and material_table()[name].mixture is not None:
-        right = "fill and impregnation in [geometry], or like alone"
-        raise InputError(f"{next(iter(numbers))} of a winding", where, right)
     return name, tuple((key, float(value), source) for key, value in _each(numbers).items())
 
 
@@ -113,9 +115,18 @@ def entry_of(name: str, properties: Properties) -> str | dict[str, Any]:
 
 
 def with_properties(usual: Material, properties: Properties) -> Material:
-    """The material with other values; their spreads stay as the table has them."""
+    """The material, or a winding's conductor, with other values; their spreads stay as the table has them."""
     values: dict[str, Any] = {key: value for key, value, _ in properties}
     sources = {**usual.sources, **{key: source for key, _, source in properties}}
+    if values and usual.mixture is not None:
+        conductor, fill = {**CONDUCTOR, "k_conductor": usual.mixture.k_conductor, **values}, usual.mixture.fill
+        mixture = replace(usual.mixture, k_conductor=conductor["k_conductor"])
+        mass = conductor["rho_conductor"]
+        rho = usual.rho + fill * (mass - CONDUCTOR["rho_conductor"])
+        copper = CONDUCTOR["rho_conductor"] * CONDUCTOR["cp_conductor"]
+        heat = usual.rho * usual.cp + fill * (mass * conductor["cp_conductor"] - copper)
+        k_plane, k_axial = _bundle(mixture)
+        values = {"mixture": mixture, "k_plane": k_plane, "k_axial": k_axial, "rho": rho, "cp": heat / rho}
     return replace(usual, **values, sources=sources) if values else usual
 
 
@@ -183,20 +194,22 @@ def _mixed(
     fill: float,
     k_resin: float,
     along: float = 1.0,
-    k_conductor: float = 385.0,
+    k_conductor: float = CONDUCTOR["k_conductor"],
     impregnation: float = 1.0,
     shape: str = "round",
 ) -> dict[str, Any]:
     """Copper wires in resin, with air where the resin is missing."""
     # Conductivity of resin with air, the resin dispersed in it (W/m/K): Hashin and Shtrikman's lower bound
     k_between = k_resin if impregnation >= 1.0 else winding_conductivity(impregnation, k_resin, K_AIR)[0]
-    across, lengthwise = winding_conductivity(fill, k_conductor, k_between)
-    across = lengthwise if shape == "bar" else across
-    copper, resin = fill * 8930.0, (1 - fill) * impregnation * 1350.0
-    return {
-        "k_plane": across,
-        "k_axial": along * lengthwise + (1 - along) * across,
-        "rho": copper + resin,
-        "cp": (copper * 390.0 + resin * 1500.0) / (copper + resin),
-        "mixture": Mixture(fill, k_conductor, k_between, along, shape),
-    }
+    mixture = Mixture(fill, k_conductor, k_between, along, shape)
+    k_plane, k_axial = _bundle(mixture)
+    copper, resin = fill * CONDUCTOR["rho_conductor"], (1 - fill) * impregnation * 1350.0
+    cp = (copper * CONDUCTOR["cp_conductor"] + resin * 1500.0) / (copper + resin)
+    return {"k_plane": k_plane, "k_axial": k_axial, "rho": copper + resin, "cp": cp, "mixture": mixture}
+
+
+def _bundle(mixture: Mixture) -> tuple[float, float]:
+    """Conductivity of a winding across and along the axis (W/m/K)."""
+    across, lengthwise = winding_conductivity(mixture.fill, mixture.k_conductor, mixture.k_between)
+    across = lengthwise if mixture.shape == "bar" else across
+    return across, mixture.along * lengthwise + (1 - mixture.along) * across

@@ -31,6 +31,7 @@ ROTOR_SHARE = 0.1  # of the iron's losses in rotor and magnets, order of magnitu
 USUAL_RPM = 3000.0
 LINER_H = 500.0  # W/m2/K: 0.3 mm of slot liner at 0.16 W/m/K
 PHASES = 3
+CAGE_METALS = (("alum", "aluminium-cast"), ("copper", "copper"), ("cu", "copper"))  # by a word of their name
 
 
 def template(draft: Draft, name: str) -> None:

@@ -1,4 +1,4 @@
-"""Motor-CAD files (.mot, sections of key=value): machines with permanent magnets and a rotor inside the stator."""
+"""Motor-CAD files (.mot, sections of key=value): machines with magnets or a cage, the rotor inside the stator."""
 
 from __future__ import annotations
 
@@ -10,19 +10,20 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
-from geom.description.materials import LIMITS, material
+from geom.description.materials import LIMITS
 from geom.description.outlines import INSET, Outline, radii
 from geom.description.profile import Loop, loop_area
 from geom.errors import InputError
 from geom.importing import assumptions
 from geom.importing.draft import Draft, in_mm, new_draft, number, one_line, read_text
-from geom.importing.plane import Place, Point, Slot, arc, loop_through, mirror, unite
+from geom.importing.plane import Place, Point, Slot, arc, crossing, loop_through, mirror, on_circle, unite
 from geom.importing.slots import magnet_of
 
 RIGHT = "a Motor-CAD file: [Header] with Program_Name=Motor-CAD, then sections of key=value"
 METRES = 1e-3  # lengths of the file are in mm
 LITRES_PER_MIN = 6e4  # in m3/s
 COOLANTS = {"egw 50/50": "glycol-50", "water": "water", "pgw 50/50": "propylene-glycol-50"}
+BARS = {"2": "between parallel teeth", "4": "pear"}  # of the cage's upper bars, by Top_Bar_Type
 HOME = {"Shaft_Speed": "Miscellaneous"}  # of keys that several sections have, the one that counts
 # What keys of a file are here.
 _KEYS = tomllib.loads(Path(__file__).with_name("motor_cad.toml").read_text("utf-8"))
@@ -72,7 +73,7 @@ class File:
 def read_motor_cad(path: Path, family_template: str) -> Draft:
     """The draft of a machine file. Raises InputError for a file that is damaged or foreign, or of another kind."""
     file = _parsed(path)
-    file.choice("Motor_Type", ("BPM",))
+    file.choice("Motor_Type", ("BPM", "IM"))
     draft = new_draft(file.text("Title"), path, f"Motor-CAD {file.values.get('Program_Version', '')}")
     draft.take("machine", "Title", name=draft.name)
     draft.assume("machine", "any cross-section", family="cross-section")
@@ -118,9 +119,30 @@ def _parsed(path: Path) -> File:
     return file
 
 
+def _corner(place: Place, tooth: float, circle: float, radius: float, side: int) -> tuple[complex, complex, complex]:
+    """A rounded corner between the flank of a tooth and a circle around the axis: its centre and both its ends.
+
+    side : 1 where the circle is the bottom, -1 where it is the top;  all else in m
+    """
+    low = tooth / 2 + radius
+    centre = place.from_tooth(math.sqrt((circle - side * place.way * radius) ** 2 - low**2) + 1j * low)
+    return centre, centre + 1j * radius * cmath.exp(1j * place.half), centre * circle / abs(centre)
+
+
+def _rounded(flank: complex, centre: complex, last: complex) -> list[Point]:
+    return [(flank, arc(flank, last, centre)), (last, 0.0)]
+
+
+def _below_tip(place: Place, start: complex, slope: float, tooth: float) -> complex:
+    """Where the slope of a tooth's tip, depth for each step sideways, meets its flank."""
+    room = place.beside_tooth(start.real, tooth).imag - start.imag
+    step = room / (1.0 - place.way * slope * math.tan(place.half))
+    return start + complex(place.way * slope * step, step)
+
+
 def _slot(file: File, place: Place) -> Slot:
-    """Corners from the bore on: opening, tooth tip, flank, and a bottom with rounded corners around the axis."""
-    kind = file.choice("Slot_Type", ("Parallel_Tooth", "Parallel_Slot"))
+    """Corners from the bore on: opening, tooth tip, flank, and a bottom by its kind."""
+    kind = file.choice("Slot_Type", ("Parallel_Tooth", "Parallel_Tooth_SqBase", "Parallel_Slot"))
     opening, tip, deep = (file.length(key) for key in ("Slot_Opening", "Tooth_Tip_Depth", "Slot_Depth"))
     slope = math.tan(math.radians(file.number("Tooth_Tip_Angle", 0.0, 80.0, 0.0)))
     z1 = place.on_surface(opening)
@@ -128,23 +150,17 @@ def _slot(file: File, place: Place) -> Slot:
     radius = file.length("Slot_Corner_Radius", 0.0)
     if kind == "Parallel_Slot":
         wide = file.length("Slot_Width")
-        rise = complex(max(wide - opening, 0.0) / 2 * slope, wide / 2 - z2.imag)
-        flank, way = z2 + rise, 1.0 + 0j
+        flank = z2 + complex(max(wide - opening, 0.0) / 2 * slope, wide / 2 - z2.imag)
         centre = math.sqrt((bottom - radius) ** 2 - (wide / 2 - radius) ** 2) + 1j * (wide / 2 - radius)
-        end = centre + 1j * radius
+        end, last = centre + 1j * radius, centre * bottom / abs(centre)
     else:
-        tooth, way = file.length("Tooth_Width"), cmath.exp(1j * place.half)
-        # where the tip's slope, tan(angle) down for each step sideways, meets the flank of the tooth
-        room = place.beside_tooth(z2.real, tooth).imag - z2.imag
-        step = room / (1.0 - slope * math.tan(place.half))
-        flank = z2 + complex(slope * step, step)
-        low = tooth / 2 + radius
-        centre = place.from_tooth(math.sqrt((bottom - radius) ** 2 - low**2) + 1j * low)
-        end = centre + 1j * radius * way
-    last = centre * bottom / abs(centre) if radius else end
-    half: list[Point] = [(z1, 0.0), (z2, 0.0), (flank, 0.0), (end, arc(end, last, centre) if radius else 0.0)]
-    half = [*half, (last, 0.0)] if radius else half
-    return Slot(half, arc(last.conjugate(), last), 2)
+        tooth = file.length("Tooth_Width")
+        flank = _below_tip(place, z2, slope, tooth)
+        centre, end, last = _corner(place, tooth, bottom, radius, 1)
+    if kind == "Parallel_Tooth_SqBase":  # at right angles to the teeth, so with a ridge in its middle
+        ends = (place.from_tooth(bottom + 0.5j * tooth), complex(bottom / math.cos(place.half)))
+        return Slot([(z, 0.0) for z in (z1, z2, flank, *ends)], 0.0, 2)
+    return Slot([(z1, 0.0), (z2, 0.0), (flank, 0.0), *_rounded(end, centre, last)], arc(last.conjugate(), last), 2)
 
 
 def _stator(draft: Draft, file: File) -> tuple[float, float, float]:
@@ -245,7 +261,7 @@ def _section(file: File) -> float:
 
 
 def _v_layers(file: File, place: Place) -> list[tuple[Loop, Loop]]:
-    """One arm of every layer of a V: the magnet, and the air to its outer end, above the middle of the pole."""
+    """One arm of every layer of a V: the magnet, and the air beyond it to bridge and web, above the pole's middle."""
     out = []
     for k in range(round(file.number("VMagnet_Layers", 1, 10, 1))):
         value = lambda key, usual=None, k=k: file.length(f"{key}_Array[{k}]", usual)  # noqa: E731
@@ -258,16 +274,49 @@ def _v_layers(file: File, place: Place) -> list[tuple[Loop, Loop]]:
         end = start + value("MagnetBarWidth") * way
         across = 1j * way * thick
         magnet = loop_through([start, end, end + across, start + across])
-        excess = ((tip - end) * way.conjugate()).real
-        out.append((magnet, loop_through([end, tip, tip + across, end + across]) if excess > 1e-5 else ()))
+        corner, reach = end + across, abs(tip)
+        web = reach * cmath.exp(1j * (place.half - math.asin(value("WebThickness", 0.0) / 2 / reach)))
+        foot = crossing(corner, corner + way, web, web + cmath.exp(1j * place.half))
+        edge = [web, foot]  # of the air: along bridge and web, or along the bridge alone
+        if abs(foot) > reach:
+            edge = [max(on_circle(corner, corner + way, reach), key=lambda z: (z * way.conjugate()).real)]
+        fits = cmath.phase(edge[0]) > cmath.phase(tip) and ((edge[-1] - corner) * way.conjugate()).real > 0
+        bridge: list[Point | complex] = [(tip, arc(tip, edge[0])), *edge]
+        air = [end, *(bridge if fits else [tip]), corner]
+        out.append((magnet, loop_through(air) if ((tip - end) * way.conjugate()).real > 1e-5 else ()))
+    return out
+
+
+def _u_layers(file: File, place: Place) -> list[tuple[Loop, list[Loop]]]:
+    """Half of every layer of a U: its air with the magnets', and these, above the middle of the pole."""
+    out = []
+    for k in range(round(file.number("Magnet_Layers", 1, 10, 1))):
+        value = lambda key, usual=None, k=k: file.length(f"{key}_Array[{k}]", usual)  # noqa: E731
+        reach, web = place.radius - value("UShape_BridgeThickness"), value("UShape_WebThickness") / 2
+        lean = math.radians(file.number(f"UShape_OuterAngleOffset_Array[{k}]", -80, 80, 0.0))
+        tip, way = (reach * cmath.exp(1j * (place.half - math.asin(web / reach))), cmath.exp(1j * (place.half - lean)))
+        deep, across = value("UShape_Thickness_Inner", 0.0), -1j * way * value("UShape_Thickness_Outer", 0.0)
+        low, post = value("UShape_InnerDiameter") / 2, value("UShape_CentrePost", 0.0) / 2
+        foot, inner = (crossing(z, z + way, x, x + 1j) for z, x in ((tip, low), (tip + across, low + deep)))
+        top = max(on_circle(tip + across, tip + across + way, reach), key=lambda z: z.real)
+        arm: list[Point | complex] = [inner, (top, arc(top, tip)), tip, foot]
+        start = max(post, value("UShape_Post_Inner", 0.0) / 2) + value("UMagnet_Offset_Inner", 0.0)
+        side, end = value("UMagnet_Length_Inner", 0.0), value("UMagnet_Length_Outer", 0.0)
+        flat = [low + 1j * start, low + deep + 1j * start, low + deep + 1j * (start + side), low + 1j * (start + side)]
+        steps = [((z - tip) * way.conjugate()).real for z in (foot, inner, top)]  # along the arm, from its tip
+        middle = tip + (max(steps[:2]) + min(steps[2], 0.0)) / 2 * way
+        along = [middle - end / 2 * way, middle + end / 2 * way]
+        beside = [along[0], along[0] + across, along[1] + across, along[1]]
+        pocket = loop_through([low + 1j * post, low + deep + 1j * post, *arm] if deep and post < inner.imag else arm)
+        out.append((pocket, [loop_through(z) for z, length in ((flat, side), (beside, end)) if length]))
     return out
 
 
 def _rotor(draft: Draft, file: File) -> None:
     poles = file.count("Pole_Number")
     place = Place(file.length("Stator_Bore") / 2 - file.length("Airgap"), -1, math.pi / poles)
-    kind = file.choice("BPM_Rotor", ROTORS)
-    ROTORS[kind](draft, file, place, poles)
+    rotor_kind = _cage_rotor if file.text("Motor_Type") == "IM" else ROTORS[file.choice("BPM_Rotor", ROTORS)]
+    rotor_kind(draft, file, place, poles)
     draft.take("geometry.shaft", "Shaft_Dia", diameter_mm=file.number("Shaft_Dia"))
     stator, rotor = file.number("Stator_Lam_Length"), file.number("Rotor_Lam_Length", usual=0.0)
     if rotor and abs(rotor - stator) > 1e-3:
@@ -275,7 +324,7 @@ def _rotor(draft: Draft, file: File) -> None:
         words = f"contradicts Stator_Lam_Length = {stator:g}: each stack has its own here, change one if they are one"
         draft.leave("Rotor_Lam_Length", rotor, words)
     magnets = file.number("Magnet_Length", usual=rotor or stator)
-    if abs(magnets - (rotor or stator)) > 1e-3:
+    if "magnets" in assumptions.parts_of(draft) and abs(magnets - (rotor or stator)) > 1e-3:
         draft.leave("Magnet_Length", magnets, "contradicts the rotor's length, which magnets have here")
 
 
@@ -288,16 +337,77 @@ def _v_rotor(draft: Draft, file: File, place: Place, poles: int) -> None:
     draft.draw("magnets", f"{words}: at the inner ends of their pockets", poles, magnets)
 
 
+def _u_rotor(draft: Draft, file: File, place: Place, poles: int) -> None:
+    layers = _u_layers(file, place)
+    words = "UShape_InnerDiameter, UShape_WebThickness, UShape_Thickness_Inner, UShape_Thickness_Outer by layer"
+    draft.draw("pockets", words, poles, unite([loop for half, _ in layers for loop in (half, mirror(half))]))
+    magnets = [loop for _, some in layers for magnet in some for loop in (magnet, mirror(magnet))]
+    draft.draw("magnets", "UMagnet_Length_Inner, UMagnet_Length_Outer by layer", poles, magnets)
+    ribs = {f"UShape_Post_{side}_Array[{k}]" for side in ("Inner", "Outer") for k in range(len(layers))}
+    for key in sorted(key for key in ribs if file.number(key, usual=0.0)):
+        draft.leave(key, file.number(key), "no ribs here but UShape_CentrePost, in the middle of the pole")
+
+
 def _surface_rotor(draft: Draft, file: File, place: Place, poles: int) -> None:
-    thick, arc_ = file.length("Magnet_Thickness"), math.radians(file.number("Magnet_Arc_[ED]", 1, 180)) * 2 / poles
-    core = Place(place.radius - thick, -1, place.half)
-    sizes = {"H0": 0.0, "Hmag": thick, "W0": arc_, "Wmag": arc_}
-    draft.draw("magnets", "Magnet_Thickness, Magnet_Arc_[ED]", poles, magnet_of("SlotM11", core, sizes).filled)
+    """Magnets with sides along radii, or parallel to their middle and as wide as their arc is outside."""
+    thick, angle = file.length("Magnet_Thickness"), math.radians(file.number("Magnet_Arc_[ED]", 1, 180)) * 2 / poles
+    core, kind = Place(place.radius - thick, -1, place.half), "SlotM11"
+    sizes = {"H0": 0.0, "Hmag": thick, "W0": angle, "Wmag": angle}
+    if file.text("BPM_Rotor") == "Surface_Parallel":
+        wide, kind = 2 * place.radius * math.sin(angle / 2), "SlotM15"
+        sizes |= {"Wmag": wide, "W0": 2 * math.asin(wide / 2 / core.radius), "Rtopm": place.radius}
+    draft.draw("magnets", "Magnet_Thickness, Magnet_Arc_[ED]", poles, magnet_of(kind, core, sizes).filled)
     draft.take("geometry.rotor", "Stator_Bore, Airgap, Magnet_Thickness", core_diameter_mm=in_mm(2 * core.radius))
+
+
+def _bar(file: File, place: Place) -> Slot:
+    """Corners from the rotor's surface on: opening, what is above the flank by its kind, flank, a round bottom."""
+    opening, depth, deep = (file.length(f"Bar_{key}_[T]") for key in ("Opening", "Opening_Depth", "Depth"))
+    tooth, z1 = file.length("Rotor_Tooth_Width_T"), place.on_surface(opening)
+    bottom = _corner(place, tooth, place.radius - deep, file.length("Bar_Corner_Radius[T]", 0.0), 1)
+    top = place.radius - depth
+    z2 = math.sqrt(top**2 - opening**2 / 4) + 0.5j * opening
+    if BARS[file.choice("Top_Bar_Type", BARS)] == "pear":
+        centre, end, first = _corner(place, tooth, top, file.length("BarT_Opening_Radius", 0.0), -1)
+        above = [(z2, arc(z2, first)), (first, arc(first, end, centre)), (end, 0.0)]
+    else:
+        slope = math.tan(math.radians(file.number("Bar_Tip_Angle_[T]", 0.0, 80.0, 0.0)))
+        above = [(z2, 0.0), (_below_tip(place, z2, slope, tooth), 0.0)]
+    centre, end, last = bottom
+    half = [(z1, 0.0), *above, *_rounded(end, centre, last)]
+    return Slot(half, arc(last.conjugate(), last), 1, round_lid=True)
+
+
+def _cage_rotor(draft: Draft, file: File, place: Place, poles: int) -> None:
+    """A cage of one bar in each slot: closed slots are holes, others are cut into the surface."""
+    file.choice("Bottom_Bar_Type", ("", "0"))
+    bars = file.count("Rotor_Bars")
+    place = Place(place.radius, -1, math.pi / bars)
+    try:
+        slot = _bar(file, place)
+        filled = slot.filled
+    except (ValueError, ZeroDivisionError):
+        right = "Bar_Depth_[T], Rotor_Tooth_Width_T and Bar_Corner_Radius[T] that leave a bar"
+        raise InputError("the bar is not a shape", f"{file.path} [Dimensions]", right) from None
+    words = f"Top_Bar_Type, {BARS[file.text('Top_Bar_Type')]}, Bar_Depth_[T], Bar_Opening_[T], Rotor_Tooth_Width_T"
+    if BARS[file.text("Top_Bar_Type")] == "pear":
+        draft.leave("Top_Bar_Type", "4", "read as a pear, by the keys that belong to it: compare the drawing")
+    opened = file.number("Bar_Opening_[T]") > 0
+    draft.draw("notches" if opened else "pockets", words, bars, [slot.path] if opened else filled)
+    draft.draw("bars", f"{words}: below the opening", bars, filled)
+    reach = radii((Outline(bars, filled),))
+    more = sum(file.length(f"EndRing_{side}_Add_F", 0.0) for side in ("Inner", "Outer"))
+    draft.take("geometry.rotor", "EndRing_Thickness_F", end_mm=file.number("EndRing_Thickness_F", 0.5, 300))
+    words = "the bars' height, EndRing_Inner_Add_F and EndRing_Outer_Add_F"
+    draft.take("geometry.rotor", words, ring_mm=in_mm(max(reach) - min(reach) + more))
+    metal = file.text("Material_Rotor_Cage_Top").lower()
+    like = next((name for word, name in assumptions.CAGE_METALS if word in metal), "aluminium-cast")
+    draft.take("materials", f"Material_Rotor_Cage_Top, {metal}", **{"rotor.cage": {"like": like}})
 
 
 ROTORS: dict[str, Callable[[Draft, File, Place, int], None]] = {
     "Interior_VShape": _v_rotor,
+    "Interior_UShape": _u_rotor,
     "Surface_Radial": _surface_rotor,
     "Surface_Parallel": _surface_rotor,
 }
@@ -306,7 +416,7 @@ ROTORS: dict[str, Callable[[Draft, File, Place, int], None]] = {
 def _frame(draft: Draft, file: File, family_template: str) -> None:
     kind, lam, outside = file.text("Housing_Type"), file.length("Stator_Lam_Dia"), file.length("Housing_Dia")
     wall, stack = (outside - lam) / 2, file.number("Stator_Lam_Length")
-    if "Water_Jacket" in kind:
+    if kind == "Water_Jacket":
         inner, high = file.length("WJ_Channel-Lam"), file.length("WJ_Channel_Height")
         wide, rib = file.number("WJ_Channel_Width"), file.number("WJ_Channel_Spacing")
         turns = max(round((stack - rib) / max(wide + rib, 1e-6)), 1)
@@ -316,13 +426,21 @@ def _frame(draft: Draft, file: File, family_template: str) -> None:
         draft.take("geometry.housing", "WJ_Channel_Width and WJ_Channel_Spacing over the stack", turns=turns)
         even = (stack - turns * wide) / (turns + 1)
         draft.assume("geometry.housing", "ribs that leave WJ_Channel_Width to each turn", rib_mm=round(even, 6))
-    elif wall > 1e-3 and not file.number("Fin_Number_[Total]", usual=0.0) > 1:
+    elif "Water_Jacket" not in kind and wall > 1e-3 and not file.number("Fin_Number_[Total]", usual=0.0) > 1:
         draft.take("geometry.housing", "Housing_Dia, Stator_Lam_Dia", kind="plain", thickness_mm=in_mm(wall))
     else:
         draft.leave("Housing_Type", kind, "this housing is not read: a template stands for it")
-        assumptions.template(draft, family_template)
-    draft.take("geometry.frame", "Motor_Length", length_mm=file.number("Motor_Length"))
-    draft.take("geometry.frame", "Endcap_Thickness_[F]", cap_mm=file.number("Endcap_Thickness_[F]", usual=10.0))
+        assumptions.template(draft, "jacket" if "Water_Jacket" in kind else family_template)
+    cap, length = file.number("Endcap_Thickness_[F]", usual=10.0), file.number("Motor_Length")
+    draft.take("geometry.frame", "Endcap_Thickness_[F]", cap_mm=cap)
+    ends = sum(draft.value("geometry.winding", key) for key in ("straight_mm", "end_mm"))
+    least = stack + 2 * (ends + cap + 1.0)  # mm; 1 between end turns and end-cap
+    if length >= least:
+        draft.take("geometry.frame", "Motor_Length", length_mm=length)
+    else:
+        words = f"contradicts Stator_Lam_Length, EWdg_Overhang_[F], Endcap_Thickness_[F]: together {least:.5g} mm"
+        draft.leave("Motor_Length", length, words)
+        draft.assume("geometry.frame", "as long as all it holds", length_mm=in_mm(METRES * least))
     shaft, seat = file.number("Shaft_Dia"), file.number("Bearing_Dia_[F]", usual=0.0)
     if seat < 1.2 * shaft:
         draft.leave(
@@ -352,17 +470,25 @@ def _cooling(draft: Draft, file: File) -> None:
 
 def _materials(draft: Draft, file: File) -> None:
     """What parts are made of, by the file's own values; sheets are read in their plane."""
-    for part in sorted(assumptions.parts_of(draft) & _KEYS["materials"].keys()):
-        end, k = _KEYS["materials"][part]
+    kinds = {**_KEYS["materials"], **{part: ["Copper_-_Active", "k"] for part in assumptions.windings(draft)}}
+    for part in sorted(assumptions.parts_of(draft) & kinds.keys()):
+        end, k = kinds[part]
         keys = {k: f"Thermal_Conductivity_{end}", "rho": f"Density_{end}", "cp": f"Specific_Heat_{end}"}
+        if part == "rotor.cage":
+            keys = {k: f"Conductivity_{end}", "rho": f"Density_{end}", "cp": f"Cp_{end}"}
         values = {ours: file.number(key, *LIMITS[ours]) for ours, key in keys.items() if file.text(key).strip()}
+        if part in assumptions.windings(draft):
+            values = {f"{ours}_conductor": value for ours, value in values.items()}
         if values:
-            draft.take("materials", ", ".join(keys.values()), **{part: values})
+            draft.take(
+                "materials", ", ".join(keys.values()), **{part: {**(draft.value("materials", part) or {}), **values}}
+            )
 
 
 def _losses(draft: Draft, file: File, copper: tuple[float, float, float]) -> None:
     """As the file has them at its reference speeds; where it has none but in the copper, the usual ones."""
-    watts = {key: file.number(key, 0.0, 1e9, 0.0) for key in _KEYS["losses"]}
+    parts = {*assumptions.parts_of(draft), "winding.copper", "stator.core.back", "stator.core.teeth", "airgap"}
+    watts = {key: file.number(key, 0.0, 1e9, 0.0) for key, loss in _KEYS["losses"].items() if loss[-1] in parts}
     speed = file.number("Shaft_Speed", 0.0, 1e6, assumptions.USUAL_RPM)
     if not any(watts.values()):
         draft.leave("[Losses_At_RPM_Ref]", "0", "no losses in the file")
@@ -372,7 +498,7 @@ def _losses(draft: Draft, file: File, copper: tuple[float, float, float]) -> Non
         return
     draft.take("ratings", "Shaft_Speed", speed_rpm=speed)
     for key, (name, other, kind, place) in _KEYS["losses"].items():
-        if not watts[key]:
+        if not watts.get(key):
             continue
         reference = file.number(f"Ref_Speed_-_{name}", 1.0, 1e6, assumptions.USUAL_RPM)
         exponent = file.number(f"Speed_Coeff_-_{other or name}", 0.0, 10.0, 0.0)
@@ -393,10 +519,6 @@ def _left(draft: Draft, file: File) -> None:
         text = file.text(key)
         if text and text != str(neutral) and not (isinstance(neutral, float) and _zero(text)):
             draft.leave(key, text, why)
-    ours = material("copper").k_plane
-    k = file.number("Thermal_Conductivity_Copper_-_Active", 0.0, 1e4, ours)
-    if abs(k / ours - 1) > 0.01:
-        draft.leave("Thermal_Conductivity_Copper_-_Active", k, f"copper in windings has {ours:g} W/m/K here")
     for key, (first, second) in file.contradictions.items():
         if key in file.reads:
             draft.leave(key, second, f"stands there twice: {first} is taken")

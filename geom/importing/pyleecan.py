@@ -42,7 +42,6 @@ SECTIONS = {
     "Wwire": lambda c: math.pi / 4 * c["Wwire"] ** 2 * c.get("Nwppc", 1),
 }
 PLACEHOLDER = 1  # what pyleecan writes for a property of a material that nobody gave
-CAGE_METALS = (("alum", "aluminium-cast"), ("copper", "copper"), ("cu", "copper"))
 LOST = {
     "skew": "the iron is straight here",
     "yoke_notch": "the laminations are round outside",
@@ -96,6 +95,9 @@ def read_pyleecan(path: Path, family_template: str) -> Draft:
     _shaft(draft, document, pair)
     for part, key in (("stator.core", "stator"), ("rotor.core", "rotor"), ("shaft", "shaft")):
         _material(draft, part, _part(_part(document, key), "mat_type"), f"{key}.mat_type")
+    conductor = _part(_part(pair[0].node, "winding"), "conductor")
+    for part in assumptions.windings(draft):
+        _material(draft, part, _part(conductor, "cond_mat"), "stator.winding.conductor.cond_mat")
     _frame(draft, document, pair[0], family_template)
     assumptions.contacts(draft)
     stator = pair[0]
@@ -462,6 +464,8 @@ def _material(draft: Draft, part: str, material: Node, source: str, **like: str)
     values = {"k_plane": heat.get("lambda_x"), "k_axial": heat.get("lambda_z"), "cp": heat.get("Cp")}
     values["rho"] = _part(material, "struct").get("rho")
     fine = {k: v for k, v in values.items() if v != PLACEHOLDER and isinstance(v, int | float) and in_limits(k, v)}
+    if part in assumptions.windings(draft):
+        fine = {f"{k.removesuffix('_axial')}_conductor": v for k, v in fine.items() if k != "k_plane"}
     if fine or like:
         draft.take("materials", source, **{part: {**like, **fine} if fine else like["like"]})
 
@@ -493,7 +497,7 @@ def _cage(draft: Draft, rotor: Lamination, slot: Slot | PathSlot, copies: int, k
         draft.leave("rotor.Hscr", high, "higher than bars to shaft")
         draft.assume("geometry.rotor", "rings as high as the bars", ring_mm=in_mm(min(max(reach) - min(reach), most)))
     metal = str(_part(rotor.node, "ring_mat").get("name", "")).lower()
-    name = next((name for word, name in CAGE_METALS if word in metal), "aluminium-cast")
+    name = next((name for word, name in assumptions.CAGE_METALS if word in metal), "aluminium-cast")
     _material(draft, "rotor.cage", _part(rotor.node, "ring_mat"), f"rotor.ring_mat, {metal}", like=name)
 
 

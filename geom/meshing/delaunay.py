@@ -9,6 +9,7 @@ from scipy.spatial import Delaunay
 from geom.arrays import Array, Ints
 
 _STRAIGHT = 1e-4  # rad; a border that turns by less goes straight on
+_FLAT = 1e-15  # of a point's distance from the axis: what rounding leaves of three points in a line
 _NUDGE = 1e-6  # of the length of a straight border: far below any tolerance, far above rounding
 
 
@@ -61,8 +62,10 @@ def triangulate_face(points: Array, border: Ints, face: shapely.Polygon) -> Ints
     for a, b in _missing(triangles, border):
         triangles = _force_edge(points, triangles, int(a), int(b))
     triangles = triangles[shapely.contains_xy(face, points[triangles].mean(axis=1))]
-    complete = abs(_doubled_area(points, triangles).sum() / 2 / face.area - 1) < 1e-9
-    if complete and not len(_missing(triangles, border)):
+    doubled = _doubled_area(points, triangles)
+    complete = abs(doubled.sum() / 2 / face.area - 1) < 1e-9
+    flat = doubled.min() < _FLAT * np.abs(points).max() * face.area**0.5
+    if complete and not flat and not len(_missing(triangles, border)):
         return triangles
     # Constrained Delaunay triangles between border points only (GEOS, robust)
     corners = shapely.get_coordinates(shapely.get_parts(shapely.constrained_delaunay_triangles(face)))

@@ -46,8 +46,6 @@ from lumped.schemas.reader import Table, suggestion
 
 AIR_IN_SPACE = 60.0  # J/K, a few tens of litres of air with a part of its walls' skin
 
-COPPER, RESIN = 8930.0, 1350.0  # kg/m3, as in the mixtures of geom.description.materials
-
 
 def means(machine: Machine, network: Network) -> dict[str, Place]:
     """Name -> place; its mean row is what the sensor sees."""
@@ -71,9 +69,11 @@ def _mean(machine: Machine, network: Network, name: str, table: Table) -> Place:
 
 
 def _amount(machine: Machine, part: str, by: str) -> float:
-    """kg, or m3 of copper: the length of wire of one cross-section."""
-    rho, volume = machine.material_of(part).rho, machine.part(part).volume
-    return rho * volume if by == "mass" else max(rho - RESIN, 0.0) / (COPPER - RESIN) * volume
+    """kg, or m3 of conductor: the length of wire of one cross-section."""
+    material, volume = machine.material_of(part), machine.part(part).volume
+    if by == "mass":
+        return material.rho * volume
+    return volume if material.mixture is None else material.mixture.fill * volume
 
 
 def fluids(machine: Machine) -> dict[str, float]:

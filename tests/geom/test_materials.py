@@ -4,7 +4,7 @@ import pytest
 from hypothesis import given, strategies as st
 
 from geom import InputError, material, material_table, winding_conductivity
-from geom.description.materials import K_AIR
+from geom.description.materials import CONDUCTOR, K_AIR, filled, read_entry, with_properties
 from geom.machine_file import machine_from
 
 VALUES = {"k_plane", "k_axial", "rho", "cp", "emissivity"}
@@ -131,3 +131,36 @@ def test_values_of_a_winding_are_refused():
     with pytest.raises(InputError, match="fill and impregnation"):
         with_housing({"k": 2.0}, "winding")
     assert with_housing({"like": "copper", "k": 390.0}, "winding").material_of("winding").k_axial == 390.0
+
+
+def test_a_winding_has_the_conductor_of_its_file():
+    """By volume, as in its closed forms: of copper only what is conductor changes, resin and fill stay."""
+    usual, (name, properties) = (
+        filled("winding", 0.4, 1.0),
+        read_entry({"k_conductor": 220, "rho_conductor": 2700}, "winding", ""),
+    )
+    light = with_properties(usual, properties)
+    assert name == "winding"
+    assert light.rho == pytest.approx(0.4 * 2700 + 0.6 * 1350)
+    assert light.rho * light.cp == pytest.approx(0.4 * 2700 * 390 + 0.6 * 1350 * 1500)
+    across, along = winding_conductivity(0.4, 220.0, usual.mixture.k_between)
+    assert (light.k_plane, light.k_axial) == pytest.approx(
+        (across, light.mixture.along * along + (1 - light.mixture.along) * across)
+    )
+    copper = tuple((key, value, "") for key, value in CONDUCTOR.items())
+    same = with_properties(usual, copper)
+    assert (same.k_plane, same.rho, same.cp) == pytest.approx((usual.k_plane, usual.rho, usual.cp))
+
+
+@pytest.mark.parametrize(
+    ("entry", "usual", "words"),
+    [
+        ({"k_conductor": 400}, "steel", "unknown key"),
+        ({"k_conductor": 0}, "winding", "not possible"),
+        ({"rho": 8900}, "winding", "rho of a winding"),
+        ({"kconductor": 400}, "winding", "k_conductor, rho_conductor"),
+    ],
+)
+def test_values_of_conductors_are_those_of_windings(entry, usual, words):
+    with pytest.raises(InputError, match=words):
+        read_entry(entry, usual, "[materials] part")

@@ -336,3 +336,12 @@ def test_public_machines_mesh_with_their_volumes(path):
     turns = stator["winding"]["Ntcoil"] * stator["winding"].get("Nlayer", 1)
     copper = stator["slot"]["Zs"] * turns * conductor["Nwppc"] * math.pi / 4 * conductor["Wwire"] ** 2 * stator["L1"]
     assert winding.filling[0] * winding.volume == pytest.approx(copper, rel=0.02)
+
+
+def test_a_winding_is_of_the_conductor_of_its_file(tmp_path):
+    metal = {"__class__": "Material", "name": "Alu", "HT": {"lambda_x": 220.0, "lambda_z": 220.0, "Cp": 900.0}}
+    metal["struct"] = {"rho": 2700.0}
+    path = saved(tmp_path, pyleecan(stator__winding__conductor__cond_mat=metal))
+    entry = import_draft(path).sections()["materials"]["winding.left"]
+    assert entry == {"k_conductor": 220.0, "cp_conductor": 900.0, "rho_conductor": 2700.0}
+    assert load_machine(path).material_of("winding").mixture.k_conductor == 220.0

@@ -39,6 +39,18 @@ def test_comb_with_thin_gaps_is_covered_exactly(size, width):
     assert flat_area(np.vstack([ring, inside]), triangles) == pytest.approx(teeth.area, rel=1e-9)
 
 
+def test_corners_in_a_line_by_chance_make_no_flat_triangle():
+    """A triangle without area has no conductivity; what is left of it is a hole in the mesh."""
+    outside = [(0.0326482988936, -0.03764850089333333), (0.0476218, 0.0127538), (-0.0339002, 0.0378999)]
+    outside += [(-0.0363756, 0.0354245), (-0.0369493, 0.0348508), (-0.0508707, -0.0004094)]
+    hole = [(0.0163715, -0.0188937), (0.013516, -0.0210313), (0.0103854, -0.0227408)]
+    rings = [np.array(outside), np.array(hole)]
+    border = np.array([*zip(range(6), [1, 2, 3, 4, 5, 0]), (6, 7), (7, 8), (8, 6)])
+    points = np.vstack(rings)
+    triangles = triangulate_face(points, border, shapely.Polygon(rings[0], rings[1:]))
+    assert min(flat_area(points, triangles[[k]]) for k in range(len(triangles))) > 1e-9
+
+
 @pytest.mark.parametrize("size", [0.004, 0.02, 0.1])
 def test_thin_layer_is_one_element_across(size):
     layer, plate = shapes.rectangle(0, 0.1, 0, 3e-4), shapes.rectangle(0, 0.1, 3e-4, 0.05)
