@@ -23,7 +23,7 @@ RIGHT = "a Motor-CAD file: [Header] with Program_Name=Motor-CAD, then sections o
 METRES = 1e-3  # lengths of the file are in mm
 LITRES_PER_MIN = 6e4  # in m3/s
 COOLANTS = {"egw 50/50": "glycol-50", "water": "water", "pgw 50/50": "propylene-glycol-50"}
-BARS = {"2": "between parallel teeth", "4": "pear"}  # of the cage's upper bars, by Top_Bar_Type
+BARS = {"2": "between parallel teeth", "4": "round at both ends"}  # of the cage's upper bars, by Top_Bar_Type
 HOME = {"Shaft_Speed": "Miscellaneous"}  # of keys that several sections have, the one that counts
 # What keys of a file are here.
 _KEYS = tomllib.loads(Path(__file__).with_name("motor_cad.toml").read_text("utf-8"))
@@ -367,7 +367,7 @@ def _bar(file: File, place: Place) -> Slot:
     bottom = _corner(place, tooth, place.radius - deep, file.length("Bar_Corner_Radius[T]", 0.0), 1)
     top = place.radius - depth
     z2 = math.sqrt(top**2 - opening**2 / 4) + 0.5j * opening
-    if BARS[file.choice("Top_Bar_Type", BARS)] == "pear":
+    if BARS[file.choice("Top_Bar_Type", BARS)] == "round at both ends":
         centre, end, first = _corner(place, tooth, top, file.length("BarT_Opening_Radius", 0.0), -1)
         above = [(z2, arc(z2, first)), (first, arc(first, end, centre)), (end, 0.0)]
     else:
@@ -390,8 +390,8 @@ def _cage_rotor(draft: Draft, file: File, place: Place, poles: int) -> None:
         right = "Bar_Depth_[T], Rotor_Tooth_Width_T and Bar_Corner_Radius[T] that leave a bar"
         raise InputError("the bar is not a shape", f"{file.path} [Dimensions]", right) from None
     words = f"Top_Bar_Type, {BARS[file.text('Top_Bar_Type')]}, Bar_Depth_[T], Bar_Opening_[T], Rotor_Tooth_Width_T"
-    if BARS[file.text("Top_Bar_Type")] == "pear":
-        draft.leave("Top_Bar_Type", "4", "read as a pear, by the keys that belong to it: compare the drawing")
+    if BARS[file.text("Top_Bar_Type")] == "round at both ends":
+        draft.leave("Top_Bar_Type", "4", "read as a bar that is round at both ends, by the keys that belong to it: compare the drawing")
     opened = file.number("Bar_Opening_[T]") > 0
     draft.draw("notches" if opened else "pockets", words, bars, [slot.path] if opened else filled)
     draft.draw("bars", f"{words}: below the opening", bars, filled)
