@@ -31,6 +31,8 @@ def next_sensors(evidence: Evidence, models: CompetingModels) -> list[Experiment
     """Places without a sensor, by the deviance gap of the pair that stays closest, per hour of mounting."""
     network = evidence.fit.network
     places = {p.name: p for p in free_places(network, evidence.tests)}
+    if not places:
+        return []
     kinds = {name: access(network, place) for name, place in places.items()}
     plans = []
     for place, more in with_sensors(evidence, tuple(places.values()), models.group):

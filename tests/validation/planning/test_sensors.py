@@ -79,3 +79,10 @@ def test_mounted_it_decides():
 @pytest.mark.parametrize("place", ["shaft", "rotor", "commutator"])
 def test_what_turns_costs_most(place):
     assert access(network(), network().places[place]) == "turning"
+
+
+def test_where_every_place_has_a_sensor_none_is_proposed_and_nothing_is_run(monkeypatch):
+    evidence, found = raced()
+    monkeypatch.setattr("validation.planning.sensors.free_places", lambda *_: [])
+    monkeypatch.setattr("validation.planning.sensors.with_sensors", None)
+    assert next_sensors(evidence, found) == []
