@@ -391,7 +391,11 @@ def _cage_rotor(draft: Draft, file: File, place: Place, poles: int) -> None:
         raise InputError("the bar is not a shape", f"{file.path} [Dimensions]", right) from None
     words = f"Top_Bar_Type, {BARS[file.text('Top_Bar_Type')]}, Bar_Depth_[T], Bar_Opening_[T], Rotor_Tooth_Width_T"
     if BARS[file.text("Top_Bar_Type")] == "round at both ends":
-        draft.leave("Top_Bar_Type", "4", "read as a bar that is round at both ends, by the keys that belong to it: compare the drawing")
+        draft.leave(
+            "Top_Bar_Type",
+            "4",
+            "read as a bar that is round at both ends, by the keys that belong to it: compare the drawing",
+        )
     opened = file.number("Bar_Opening_[T]") > 0
     draft.draw("notches" if opened else "pockets", words, bars, [slot.path] if opened else filled)
     draft.draw("bars", f"{words}: below the opening", bars, filled)
