@@ -120,11 +120,17 @@ class During(Effect):
         links, sources = larger.links[len(network.links) :], larger.sources[len(network.sources) :]
         names = [*(x.name for x in links), *(x.name for x in sources)]
         new = {name: f"{name}{IN}{self.condition}" for name in names}
-        parameters = tuple(
-            replace(p, targets=tuple((new.get(t, t), e) for t, e in p.targets))
-            for p in (*larger.parameters[:-1], replace(parameter, name=self.name))
-        )
-        return replace(network, parameters=parameters).extended(
+
+        def gate_targets(p: Parameter, first: int) -> Parameter:
+            """With the names of what this brought from one of its targets on: those before may be the same effect's,
+            there without the condition."""
+            return replace(p, targets=(*p.targets[:first], *((new.get(t, t), e) for t, e in p.targets[first:])))
+
+        count = len(network.parameters)
+        both = zip(larger.parameters, network.parameters, strict=False)
+        parameters = [gate_targets(p, len(before.targets)) for p, before in both]
+        parameters += [gate_targets(p, 0) for p in (*larger.parameters[count:-1], replace(parameter, name=self.name))]
+        return replace(network, parameters=tuple(parameters)).extended(
             links=[replace(x, name=new[x.name], law=self._law(x.law)) for x in links],
             sources=[replace(x, name=new[x.name], law=self._law(x.law)) for x in sources],
         )

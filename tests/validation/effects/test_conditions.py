@@ -11,6 +11,7 @@ from two_bodies import LID, OPEN, bench, two_bodies
 from geom.errors import InputError
 from lumped.integration.simulate import Record, simulate
 from lumped.sources.loss_laws import PowerLoss
+from lumped.transfer.laws import InputPower
 from measured.case import Case, Channel, Model, Test
 from validation import diagnose
 from validation.comparison.predict import predict
@@ -96,13 +97,26 @@ def test_heat_for_a_while_is_the_closed_form():
     assert rise[test.time < 900.0, 0] == pytest.approx(0.0, abs=5e-3)  # two runs of other steps, wrong by mK each
 
 
+@pytest.mark.parametrize("base", ["loss.constant@body", "convection.constant@body", "input.factor@speed"])
+@pytest.mark.parametrize("lasting_first", [True, False])
+def test_an_effect_that_lasts_and_the_same_in_one_test_act_each_by_its_own_amplitude(base, lasting_first):
+    """Both were in the network under names of one: the amplitude of what lasts acted in the one test alone."""
+    bare = one_node()
+    bare = replace(bare, sources=(replace(bare.sources[0], law=InputPower(P, (("speed", 10.0, 1.0),))),))
+    names = (base, f"{base} in day")
+    both = extended(bare, map(effect, names if lasting_first else names[::-1]))
+    for test in (replace(measured(n), inputs={"speed": np.full(200, 8.0)}) for n in ("day", "night")):
+        np.testing.assert_array_equal(predict(both, test, {}).y, predict(bare, test, {}).y)
+        for name in names:
+            alone = predict(effect(name).extend(bare), test, {name: 0.1}).y
+            np.testing.assert_allclose(predict(both, test, {name: 0.1}).y, alone, rtol=0.0, atol=1e-9)
+
+
 @pytest.mark.parametrize(
     "base", ["loss.constant@body", "convection.constant@body", "blockage@body", "input.factor@speed"]
 )
 def test_a_condition_of_a_test_is_the_effect_itself_there_and_nothing_elsewhere(base):
     """Amplitudes small enough for the copies of laws that bend."""
-    from lumped.transfer.laws import InputPower
-
     bare = one_node()
     bare = replace(bare, sources=(replace(bare.sources[0], law=InputPower(P, (("speed", 10.0, 1.0),))),))
     tests = {n: replace(measured(n), inputs={"speed": np.full(200, 8.0)}) for n in ("day", "night")}
