@@ -34,6 +34,11 @@ PHASES = 3
 CAGE_METALS = (("alum", "aluminium-cast"), ("copper", "copper"), ("cu", "copper"))  # by a word of their name
 
 
+def cage_metal(text: str) -> str:
+    """The material of a cage by the words that a file has for it; cast aluminium where they say nothing."""
+    return next((name for word, name in CAGE_METALS if word in text.lower()), "aluminium-cast")
+
+
 def template(draft: Draft, name: str) -> None:
     """Frame and cooling of a template. InputError for a name that is none."""
     if name not in TEMPLATES:

@@ -405,8 +405,8 @@ def _cage_rotor(draft: Draft, file: File, place: Place, poles: int) -> None:
     words = "the bars' height, EndRing_Inner_Add_F and EndRing_Outer_Add_F"
     draft.take("geometry.rotor", words, ring_mm=in_mm(max(reach) - min(reach) + more))
     metal = file.text("Material_Rotor_Cage_Top").lower()
-    like = next((name for word, name in assumptions.CAGE_METALS if word in metal), "aluminium-cast")
-    draft.take("materials", f"Material_Rotor_Cage_Top, {metal}", **{"rotor.cage": {"like": like}})
+    like = {"like": assumptions.cage_metal(metal)}
+    draft.take("materials", f"Material_Rotor_Cage_Top, {metal}", **{"rotor.cage": like})
 
 
 ROTORS: dict[str, Callable[[Draft, File, Place, int], None]] = {
@@ -474,19 +474,19 @@ def _cooling(draft: Draft, file: File) -> None:
 
 def _materials(draft: Draft, file: File) -> None:
     """What parts are made of, by the file's own values; sheets are read in their plane."""
-    kinds = {**_KEYS["materials"], **{part: ["Copper_-_Active", "k"] for part in assumptions.windings(draft)}}
+    windings = assumptions.windings(draft)
+    kinds = {**_KEYS["materials"], **{part: ["Copper_-_Active", "k"] for part in windings}}
     for part in sorted(assumptions.parts_of(draft) & kinds.keys()):
         end, k = kinds[part]
         keys = {k: f"Thermal_Conductivity_{end}", "rho": f"Density_{end}", "cp": f"Specific_Heat_{end}"}
         if part == "rotor.cage":
             keys = {k: f"Conductivity_{end}", "rho": f"Density_{end}", "cp": f"Cp_{end}"}
         values = {ours: file.number(key, *LIMITS[ours]) for ours, key in keys.items() if file.text(key).strip()}
-        if part in assumptions.windings(draft):
+        if part in windings:
             values = {f"{ours}_conductor": value for ours, value in values.items()}
         if values:
-            draft.take(
-                "materials", ", ".join(keys.values()), **{part: {**(draft.value("materials", part) or {}), **values}}
-            )
+            before = draft.value("materials", part) or {}
+            draft.take("materials", ", ".join(keys.values()), **{part: {**before, **values}})
 
 
 def _losses(draft: Draft, file: File, copper: tuple[float, float, float]) -> None:

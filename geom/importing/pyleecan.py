@@ -497,8 +497,8 @@ def _cage(draft: Draft, rotor: Lamination, slot: Slot | PathSlot, copies: int, k
         draft.leave("rotor.Hscr", high, "higher than bars to shaft")
         draft.assume("geometry.rotor", "rings as high as the bars", ring_mm=in_mm(min(max(reach) - min(reach), most)))
     metal = str(_part(rotor.node, "ring_mat").get("name", "")).lower()
-    name = next((name for word, name in assumptions.CAGE_METALS if word in metal), "aluminium-cast")
-    _material(draft, "rotor.cage", _part(rotor.node, "ring_mat"), f"rotor.ring_mat, {metal}", like=name)
+    like = assumptions.cage_metal(metal)
+    _material(draft, "rotor.cage", _part(rotor.node, "ring_mat"), f"rotor.ring_mat, {metal}", like=like)
 
 
 def _coils(draft: Draft, rotor: Lamination, slot: Slot | PathSlot, copies: int, kind: str) -> None:

@@ -162,8 +162,8 @@ def improve(
 ) -> Improvement:
     """Diagnose and add until the model is adequate, the guide says no, or an addition is not accepted.
 
-    A model that was never calibrated is calibrated first, if that gains. What the diagnosis cannot
-    tell is not offered. Whether the best plain model is reached then, or what stops it, is told at every end.
+    A model that was never calibrated is calibrated first, if that gains. What the diagnosis cannot tell is not offered.
+    Whether the best plain model is reached then, or what stops it, is told at every end.
     """
     stairs = [Step(errors(case), {})]
     if not case.model.values and (first := _first_fit(case, progress)):
