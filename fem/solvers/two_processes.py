@@ -22,7 +22,8 @@ def in_two_processes(
 ) -> list[B]:
     """work(item) of every item, at most 255, in their order; a forked process takes its share where there is room.
 
-    unknowns : of the largest matrix that is factorised;  work : does not depend on what it was called with before
+    unknowns : of the largest matrix that is factorised;  work : does not depend on what it was called with before,
+    and uses no library that keeps threads of its own (CAD does): in a forked process it would wait for them for ever
     after : in each process when no item is left, before solutions are sent
     """
     return_memory()

@@ -6,7 +6,7 @@ from dataclasses import replace
 import pytest
 from PIL import Image
 
-from geom import Machine, load_machine, read_vtu
+from geom import Machine, export_cad, load_machine, read_vtu
 from geom.machine_file import machine_from
 from lumped.build.pipeline import build as pipeline
 from lumped.condensation.reduction import Recipe
@@ -54,8 +54,14 @@ def coarse(tmp_path_factory):
         yield lambda machine, out, target: command.build_machine(machine, out, target, None)
 
 
+@pytest.fixture(scope="module")
+def solids_before(tmp_path_factory):
+    """The threads of the CAD kernel run in this process, as after an earlier build: to fork it there would hang."""
+    export_cad(small("pmsm-m1"), tmp_path_factory.mktemp("solids"))
+
+
 @pytest.fixture(scope="module", params=FEW)
-def built(request, coarse, tmp_path_factory):
+def built(request, coarse, tmp_path_factory, solids_before):
     """Machine, folder and document of the command."""
     folder = tmp_path_factory.mktemp("out")
     target = folder / "document.json"

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -35,7 +35,6 @@ def build(machine: Machine, out: Out = None, target: Json = None, accuracy: Accu
 
 def build_machine(machine: str, out: Path | None, target: str | None, accuracy: float | None) -> int:
     """The same.  accuracy : percent of a part's own rise, mesh included; None: mesh and size that a case runs"""
-    from fem.solvers.two_processes import in_two_processes
     from geom import check_cad, export_cad, write_vtu
 
     source = load_machine_file(Path(machine))
@@ -44,15 +43,11 @@ def build_machine(machine: str, out: Path | None, target: str | None, accuracy: 
         raise InputError("the machine file lies there: a result could take its name", f"--out {folder}", "out/NAME")
     with progress() as tell:
         built, size = built_from(source, accuracy, tell)
-
-        def export_solids() -> list[CadCheck]:
-            tell("solids")
-            export_cad(source, folder)
-            write_vtu(built.mesh, folder / f"{source.name}.vtu")
-            return check_cad(source)
-
-        both: list[Callable[[], Any]] = [lambda: crosscheck.checked(built, size, tell), export_solids]
-        checked, solids = in_two_processes(lambda one: one(), both, built.field.n)
+        checked = crosscheck.checked(built, size, tell)
+        tell("solids")  # in this process: a fork of one in which CAD threads ever ran never ends
+        export_cad(source, folder)
+        write_vtu(built.mesh, folder / f"{source.name}.vtu")
+        solids = check_cad(source)
         document = {**described_as(built, solids), **checked, **({} if size is None else {"sizes": size.document()})}
         crosscheck.save(document, folder)
         document["pictures"] = [str(file) for file in pictures(built, folder, tell)]
