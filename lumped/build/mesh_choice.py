@@ -28,7 +28,7 @@ from geom.disk_cache import recalled, stored
 from geom.storage import cache_folder
 from lumped.build.crosscheck import FLOOR
 from lumped.build.fixed_coefficients import FixedCoefficients, rated
-from lumped.build.pipeline import Meshing, Prepared, Progress, means_network, meshed, plain_mesh, reduced
+from lumped.build.pipeline import Meshing, Prepared, Progress, means_network, meshed, plain_mesh, reduced, silent
 from lumped.condensation.reduction import Recipe
 from lumped.machine.bases import on_every_base
 from lumped.machine.shapes import laminated, wound
@@ -181,10 +181,11 @@ class _Looks:
         point = self.point  # before processes part
 
         def hottest_points(how: Meshing) -> Kelvins:
-            ready = self.ready(how).field
+            ready = meshed(self.machine, how, silent).field  # who listens may hold a lock as it forks
             return hot_spots(point, ready, point.of_field(ready))
 
         for group in (*([how] for how in large), new[len(large) :]):
+            self.progress("estimating the error of the mesh")
             hot = in_two_processes(hottest_points, group, max((self.size(how)[1] for how in group), default=0))
             self.rises.update(zip(group, hot, strict=True))
 
