@@ -8,7 +8,9 @@ from steadiness import thinned_case
 from validation.revision.improvement import Supervisor, improve, singletons
 
 
-@pytest.mark.parametrize(("kind", "seed"), [("fan", 3), ("lid", 3), ("probe", 2), ("starved", 3), ("loose", 3)])
+@pytest.mark.parametrize(
+    ("kind", "seed"), [("fan", 3), ("lid", 3), ("lid", 7), ("lid", 63), ("probe", 2), ("starved", 3), ("loose", 3)]
+)
 def test_what_was_drawn_is_found(kind, seed):
     assert bench.KINDS[kind](np.random.default_rng(seed)) == "right"
 

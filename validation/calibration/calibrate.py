@@ -181,7 +181,8 @@ class Iterate:
     ) -> None:
         near = cache is not None and cache.nearby
         self.network, self.tests, self.unknowns, self.fixed = network, tests, unknowns, fixed
-        self.draft, self.outdated, self.worth = draft or near, cache is not None and cache.outdated, worth
+        self.outdated, self.worth = cache is not None and cache.outdated, worth
+        self.draft = draft or self.outdated
         self.centre = np.zeros_like(theta) if centre is None else centre
         self.low, self.high = unknowns.bounds
         self.fresh = not (near or (cache is not None and cache.stale))

@@ -62,6 +62,7 @@ from validation.threads import side_by_side
 Values = Mapping[str, float]
 GRID_POINTS = 15  # instants around each end
 COARSEST = 4.0  # timing steps between instants that tell one stretch from another; what carries weight is timed closer
+TANGENT_RANGE = 0.1  # of an event's amplitude: after a larger change its tangent is made anew
 DIRECTIONS = ((1, 0), (0, 1), (1, 1))  # begin, end, both
 MOVES = 8  # of the ends and refitting with them: of a size that was ten times off at first five were needed
 FITTED = 4  # of the most probable refits: an event in any of them that will be told gets its ends anew
@@ -296,8 +297,11 @@ def retimed(
     Parameters: `reach_s` test -> how far (s) an end may move at once; `refit` fits a hypothesis anew, to its end.
     """
     P = probabilities(hypotheses, 1.0)
-    order = [hypotheses[i] for i in np.argsort(-P, kind="stable") if P[i] > REPORTED]
-    few = [h for h in order if h.fit and h.members][:FITTED]
+    order = [i for i in np.argsort(-P, kind="stable") if hypotheses[i].fit and hypotheses[i].members]
+    likely = [i for i in order if P[i] > REPORTED]
+    # a large event between wrong ends explains little: the best ones stay in the race until theirs are right
+    others = sorted(set(order) - set(likely), key=lambda i: -hypotheses[i].log_bayes)
+    few = [hypotheses[i] for i in [*likely, *(i for i in others if len(hypotheses[i].members) == 1)][:FITTED]]
     fits: dict[int, Fit] = {}
     for _ in range(MOVES):
         earlier, fits = fits, fits_of_events(evidence, few)
@@ -321,7 +325,7 @@ def fits_of_events(evidence: Evidence, hypotheses: Sequence[Weighed]) -> dict[in
                 continue
             if not effect.event or throughout(evidence, effect.event):
                 continue
-            if h.fit is not None and effect.name in h.fit.values:  # else the machine ran away with the new ends
+            if h.fit is not None and h.fit.values.get(effect.name):  # else it does nothing, or ran away with new ends
                 fits.setdefault(k, h.fit)
     return fits
 
@@ -339,10 +343,12 @@ def moved_events(evidence: Evidence, fits: Mapping[int, Fit], reach_s: Mapping[s
         return During.of(effect.base, event.name)
 
     new = dict(zip(fits, side_by_side(moved, fits), strict=True))
-    others = {e.name for k, e in enumerate(evidence.effects) if k not in new}
-    new = {k: e for k, e in new.items() if e.name != evidence.names[k] and e.name not in others}
-    names = [e.name for e in new.values()]
-    return {k: e for k, e in new.items() if names.count(e.name) == 1}
+    names, out = set(evidence.names), dict[int, During]()
+    for k, e in new.items():
+        if e.name not in names:  # of two that come to the same ends the more probable one moves
+            out[k] = e
+            names.add(e.name)
+    return out
 
 
 def further_repeats(evidence: Evidence, fit: Fit, effect: During, event: Event) -> Event:
@@ -468,12 +474,23 @@ class Misfit:
 
     def of(self, network: Network) -> float:
         """Of another network with the same parameters: half the squares (nats) left; inf where it runs away."""
+        values = {**parameter_values(network, {}), **self.fit.values}
+        left, more = self.moved(network, values, 0.0)
+        if abs(more) > TANGENT_RANGE * abs(values[self.free.name]):  # a lid that is open has another tangent
+            left, _ = self.moved(network, values, more)
+        return left
+
+    def moved(self, network: Network, values: Values, more: float) -> tuple[float, float]:
+        """Half the squares (nats) left by tangents at an amplitude of so much more, and how much more they ask for."""
         H, b, square = self.H.copy(), self.b.copy(), 0.0
-        k, values = self.fit.unknowns.names.index(self.free.name), {**parameter_values(network, {}), **self.fit.values}
+        k = self.fit.unknowns.names.index(self.free.name)
+        size = float(np.clip(values[self.free.name] + more, self.free.low, self.free.high))
+        more = size - values[self.free.name]
+        b[k] -= (strain := more * H[k, k])
         try:
-            parts = segments(network, [self.test], values, [self.free])
+            parts = segments(network, [self.test], {**values, self.free.name: size}, [self.free])
         except NoSolution:
-            return float("inf")
+            return float("inf"), 0.0
         for s, (at, X, _) in zip(parts, self.here, strict=True):
             z, r = self.fit.noise.whiten(s, np.column_stack([s.J, s.r])).T
             H[k, k] += z @ z
@@ -482,7 +499,8 @@ class Misfit:
             b[at] += r @ X
             b[k] += z @ r
             square += float(r @ r)
-        return 0.5 * (square - float(b @ np.linalg.solve(H, b)))
+        step = np.linalg.solve(H, b)
+        return 0.5 * (square + strain * more - float(b @ step)), more + float(step[k])
 
 
 def with_spans(network: Network, effect: During, test: Test, spans: Sequence[Span]) -> Network:
