@@ -73,6 +73,7 @@ HEATER = re.compile(r"[QH](\d)")  # beside T of the same number
 LOAD = re.compile(r"T_?(?:load|last|mech|em|brake|shaft)")  # of a torque, where its readings are no temperature's
 AXES = ({"id", "iq"}, {"ialpha", "ibeta"})  # components whose squares add up to the current's
 OTHER_UNITS = {  # of loggers, that no table of a sheet lists: for pint
+    "temperature": ("mK",),
     "power": ("mW", "MW", "hp", "metric_horsepower"),
     "torque": ("mN*m", "cN*m", "lbf*ft"),
     "speed": ("krpm", "deg/s"),
@@ -533,7 +534,8 @@ def _in_fahrenheit(source: Source, every: list[Guess]) -> list[Guess]:
         return [replace(g, doubt=small) if g.column in hot and g.used else g for g in every]
     starts = {c: v[0] for c, g in hot.items() if (v := (r := in_memory(source, g))[np.isfinite(r)]).size}
     rooms = [c for c in starts if Role.AMBIENT in roles_of(source.labels[c])[:1]]
-    alike = len(starts) > 1 and np.ptp([*starts.values()]) < ALIKE_F
+    alike = np.ptp([*starts.values()] or [ALIKE_F, 0.0]) < ALIKE_F
+    alike &= len(starts) > 1 or not any(source.units[c] for c in hot)
     if not (rooms or alike) or not all(ROOM_F[0] < s < ROOM_F[1] for s in starts.values()):
         return every
     return [_fahrenheit(source, g, bool(rooms)) if g.column in hot else g for g in every]

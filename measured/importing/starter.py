@@ -35,7 +35,18 @@ from measured.headers.words import (
     roles_of,
     tokens,
 )
-from measured.importing.guess import AS_WINDING, AXES, DEAD, OF_INSTRUMENT, ON_OFF, UNTOLD, Guess, in_memory, is_whole
+from measured.importing.guess import (
+    AS_WINDING,
+    AXES,
+    CANNOT_BE,
+    DEAD,
+    OF_INSTRUMENT,
+    ON_OFF,
+    UNTOLD,
+    Guess,
+    in_memory,
+    is_whole,
+)
 from measured.importing.relations import names_of
 from measured.importing.source import Source
 
@@ -205,7 +216,8 @@ def starter(columns: Columns, name: str, span_s: float) -> FirstNetwork:
     if not hot:
         files = ", ".join(dict.fromkeys(str(source.file) for source, _ in columns))
         doubted = [(g, s.labels[g.column]) for s, g in columns if g.doubt]
-        lost = [g for g, n in doubted if g.doubt == OF_INSTRUMENT or roles_of(n) or "temperature" in quantities_of(n)]
+        broken = (OF_INSTRUMENT, f"as temperature {CANNOT_BE}")
+        lost = [g for g, n in doubted if g.doubt.endswith(broken) or roles_of(n) or "temperature" in quantities_of(n)]
         lost.sort(key=lambda g: g.doubt != OF_INSTRUMENT)
         doubts = (f"; '{g.column}' is left out: {g.doubt}" for g in lost if not g.feeds)
         what = "no column is a temperature of a machine" + next(doubts, "")

@@ -1069,3 +1069,34 @@ def test_columns_of_instants_alone_before_whole_numbers_end_in_a_message(tmp_pat
     lines = [f"28.03.2026 10:00:{k:02d} {89 - 8 * (k > 2)} {93 - 10 * (k > 2)}" for k in range(7)]
     with pytest.raises(InputError, match="neither name nor unit"):
         of_lines(tmp_path, lines)
+
+
+def test_the_sun_is_an_input_in_parts_of_1000_watts(tmp_path):
+    header = "t [s],T_ambient [C],T_module [C],{}"
+    folder, _ = written(tmp_path, table(header.format("Irradiance [W/m2]"), S["t"], S["A"], S["W"], 80 * S["I"]))
+    assert folder.case.tests[0].inputs["share_percent"].max() == pytest.approx(8 * S["I"].max())
+    (tmp_path / "made").rename(tmp_path / "before")
+    written(tmp_path, table(header.format("Solar radiation (W/m^2)"), S["t"], S["A"], S["W"], 80 * S["I"]))
+    assert goes(json.loads((tmp_path / "new.json").read_text()))["Solar radiation (W/m^2)"] == "share_percent"
+
+
+def test_one_temperature_that_starts_near_70_without_a_unit_is_doubted(tmp_path, capsys):
+    written(tmp_path, table("t [s],temperature,current", S["t"], 32 + 1.8 * S["W"], S["I"]))
+    assert "'temperature': or degF, by its values" in " ".join(capsys.readouterr().out.split())
+
+
+def test_millikelvins_are_refused_by_their_readings(tmp_path):
+    with pytest.raises(InputError, match=r"'MXC \[mK\]' is left out: -273.* as temperature cannot be right"):
+        written(tmp_path, table("t [s],MXC [mK],Still [mK]", S["t"], S["W"], 700 + S["W"]))
+
+
+def test_air_inside_is_a_part_where_air_outside_is_recorded(tmp_path):
+    header = "t [s],internal_air,external_air,internal_wall,heater_power"
+    _, document = written(tmp_path, table(header, S["t"], S["H"], S["A"] - 10, S["H"] - 1, 100 * S["I"]))
+    places = goes(document)
+    assert [places[c] for c in ("internal_air", "external_air")] == ["internal-air", "ambient"]
+
+
+def test_a_letter_behind_a_point_is_a_voltage(tmp_path):
+    text = table("t [s],T.motor,T.amb,dc.v,dc.i", S["t"], S["W"], S["A"], 48 - S["I"] / 10, S["I"])
+    assert goes(written(tmp_path, text)[1])["dc.v"] == "voltage_V"
