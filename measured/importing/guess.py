@@ -74,7 +74,9 @@ LOAD = re.compile(r"T_?(?:load|last|mech|em|brake|shaft)")  # of a torque, where
 AXES = ({"id", "iq"}, {"ialpha", "ibeta"})  # components whose squares add up to the current's
 OTHER_UNITS = {  # of loggers, that no table of a sheet lists: for pint
     "temperature": ("mK",),
-    "power": ("mW", "MW", "hp", "metric_horsepower"),
+    "current": ("uA",),
+    "voltage": ("uV",),
+    "power": ("uW", "mW", "MW", "hp", "metric_horsepower"),
     "torque": ("mN*m", "cN*m", "lbf*ft"),
     "speed": ("krpm", "deg/s"),
     "water_flow": ("l/h", "l/s", "gallon/min", "ml/min", "ml/s"),
@@ -506,7 +508,12 @@ def _left_out(source: Source, column: str) -> str:
         return "a compass heading, beside a place on the map"
     if words & SPREAD:
         return "a spread of readings, not a reading"
-    if (odd := words & (NOTHING | RATIO if unit == "%" else NOTHING)) and unit in WEAK:
+    switched = (
+        source.is_switch(column)
+        and {0.0, 1.0} <= {*values.tolist()}
+        and (is_of_flow(label) or {"share", "power"} & {*quantities})
+    )  # "Fan Status"
+    if (odd := words & (NOTHING | RATIO if unit == "%" else NOTHING)) and unit in WEAK and not switched:
         return f"'{sorted(odd)[0]}' is nothing a model reads"
     identifies = "id" in words and not unit_text and bool((values[np.isfinite(values)] % 1 == 0).all())
     identifies &= _counts_on(source, column) or {*values} == {values[0]} - {0.0}

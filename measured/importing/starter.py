@@ -28,6 +28,7 @@ from measured.headers.words import (
     OIL,
     OUTER,
     QUANTITY,
+    ROOMS,
     is_setpoint,
     is_spoken,
     is_within,
@@ -156,6 +157,9 @@ def of_machine(columns: Columns) -> Columns:
     inside = {label for label in rooms if not is_within(label, OUTER)}
     if inside < rooms and not any(roles_of(label := s.labels[g.column]) or is_whole(label) for s, g in parts):
         columns = _as_parts(columns, inside)
+    if not rooms and any(is_spoken(s.labels[g.column], ROOMS) for s, g in parts):
+        out = {g.column for s, g in parts if {*tokens(s.labels[g.column])} - QUANTITY["temperature"] == {"out"}}
+        columns = [(s, replace(g, place=g.place or "ambient") if g.column in out else g) for s, g in columns]
     columns = _as_parts(columns, _warmed_oil(every))
     if all(place in ("", *BOUNDARIES.values()) for *_, place in every):
         fluids = {s.labels[g.column] for s, g, place in every if place == "coolant" and not g.place}

@@ -1100,3 +1100,58 @@ def test_air_inside_is_a_part_where_air_outside_is_recorded(tmp_path):
 def test_a_letter_behind_a_point_is_a_voltage(tmp_path):
     text = table("t [s],T.motor,T.amb,dc.v,dc.i", S["t"], S["W"], S["A"], 48 - S["I"] / 10, S["I"])
     assert goes(written(tmp_path, text)[1])["dc.v"] == "voltage_V"
+
+
+@pytest.mark.parametrize("line", ["{d}-10:{m:02d}:{s}.5,{c:.2f}", "{d}@10:{m:02d}:{s} - Temp Top :{c:.2f} C"])
+@pytest.mark.parametrize("name", ["", "INFO:root:"])
+def test_a_date_and_a_time_with_another_sign_between(tmp_path, line, name):
+    rows = [line.format(d="2026-03-21", m=k // 6, s=10 * (k % 6), c=20 + k**0.7) for k in range(40)]
+    _, document = of_lines(tmp_path, [f"{name}{row}" for row in rows])
+    assert document["tests"][0]["duration_s"] == pytest.approx(390.0)
+
+
+def test_commas_between_names_over_blanks_between_readings(tmp_path):
+    lines = ["timestamp,temperature", *(f"2026-03-21T10:{k:02d}:05.25 {20 + k**0.7:.3f}" for k in range(40))]
+    assert goes(of_lines(tmp_path, lines)[1]) == {"temperature": "part"}
+
+
+def test_microamperes_and_a_letter_behind_temp_are_units(tmp_path):
+    header = "t [s],Current (µA),Voltage (µV),temp c,temp f"
+    text = table(header, S["t"], 1e6 * S["I"], 1e6 * (16 - S["I"] / 50), S["W"], 32 + 1.8 * S["W"] + np.sin(S["t"]))
+    folder, document = written(tmp_path, text)
+    assert folder.case.tests[0].inputs["current_A"].max() == pytest.approx(S["I"].max(), rel=1e-3)
+    assert {c["column"]: c["unit"] for c in document["tests"][0]["columns"]}["temp f"] == "degF"
+
+
+def test_a_fan_that_is_on_and_off_in_words_is_an_input(tmp_path):
+    fan = "\n".join(f"{t},{w:.1f},{'on' if i else 'off'}" for t, w, i in zip(S["t"], S["W"], S["I"] > 0))
+    _, document = written(tmp_path, f"t [s],Current Temp,Fan Status\n{fan}\n")
+    assert goes(document) == {"Current Temp": "part", "Fan Status": "flow_percent"}
+
+
+def test_zones_with_two_readings_in_every_row_are_tests(tmp_path):
+    rows = [
+        f"2026-03-21 {h:02d}:00:00,{z},{20 + n + h**0.5:.2f},{h % 7}"
+        for h in range(24)
+        for n, z in enumerate(["Hall", "Court", "Quad"])
+    ]
+    folder, document = of_lines(tmp_path, ["timestamp,zone,temp,uv", *rows])
+    assert len(folder.case.tests) == 3
+    assert goes(document) == {"temp": "part"}
+
+
+def test_what_is_out_is_the_open_air_beside_rooms_of_a_house(tmp_path):
+    header = "t [s],T_out,T_kitchen,T_brine_out,power [W]"
+    _, document = written(tmp_path, table(header, S["t"], S["A"] - 20, S["H"], S["A"] - 22, 100 * S["I"]))
+    assert goes(document)["T_out"] == "ambient"
+
+
+def test_probes_that_are_moved_once_are_temperatures_by_their_readings(tmp_path):
+    moved = [
+        np.where(S["t"] > at * S["t"][-1], 70 * np.exp(-S["t"] / 3 / S["t"][-1]), 22 + n)
+        for n, at in ((0, 0.1), (3, 0.2))
+    ]
+    _, document = written(
+        tmp_path, table("t [s],Sensor 2,Sensor 5", S["t"], moved[0] + S["t"] / 1e4, moved[1] + S["t"] / 1e4)
+    )
+    assert goes(document) == {"Sensor 2": "part-2", "Sensor 5": "part-5"}
