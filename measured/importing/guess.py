@@ -69,6 +69,7 @@ LEAST = 3  # readings of a column
 ROOM_C = (-50.0, 120.0)  # degC at which machines are started, in the cold and in an oven
 ANGLE = re.compile(r"(?i)theta(?:[_ ]?[a-z]{0,2}|[_ ]?(?:mech|elec|el|rot))$")  # of a rotor, rather than a temperature
 OMEGA = re.compile(r"(?<=\.)w$|^w(?=$|_(?:m|r|mot|rotor|shaft|el)$)")  # beside a torque
+VOLTS = re.compile(r"(?<=\.)v$")  # dc.v beside dc.i
 HEATER = re.compile(r"[QH](\d)")  # beside T of the same number
 LOAD = re.compile(r"T_?(?:load|last|mech|em|brake|shaft)")  # of a torque, where its readings are no temperature's
 AXES = ({"id", "iq"}, {"ialpha", "ibeta"})  # components whose squares add up to the current's
@@ -397,7 +398,7 @@ def guess(source: Source, column: str, target: Target) -> Guess:
     """A column by itself."""
     if odd := _left_out(source, column):
         return Guess(column, "", doubt=odd)
-    label, unit_text = source.labels[column], source.units[column]
+    label, unit_text = VOLTS.sub("voltage", source.labels[column]), source.units[column]
     if OMEGA.search(label) and any("torque" in quantities_of(other) for other in source.labels.values()):
         label = OMEGA.sub("omega", label)
     heater = HEATER.fullmatch(label) if not unit_text else None
