@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from datetime import date, datetime, time, timedelta
 
 from measured.headers.layout import MISSING
-from measured.headers.words import VOCABULARY, is_time, quantities_of, roles_of
+from measured.headers.words import VOCABULARY, is_time, quantities_of, roles_of, tokens
 
 NUMBER = re.compile(r"[-+]?(\d+([.,]\d*)?|[.,]\d+)([eE][-+]?\d+)?")
 # Digits in threes: with a decimal part, in several groups, or with a sign between them that is not a decimal sign.
@@ -177,7 +177,7 @@ def split_unit(header: str) -> tuple[str, str]:
     if (
         (last := TRAILING.match(header))
         and last[1]
-        and _surely(last[2])
+        and (_surely(last[2]) or (last[2] in ("c", "f") and tokens(last[1]) in (("temp",), ("temperature",))))
         and not (unit_of(last[2]) in TIMES and not is_time(last[1]) and (roles_of(last[1]) or quantities_of(last[1])))
         and not re.search(r"\([^)]*$|\[[^]]*$", last[1])
     ):

@@ -24,7 +24,7 @@ EXTREME, SPREAD, MEAN, INSTRUMENT, MACHINE = (WORDS[n] for n in ("extreme", "spr
 SPARE, RUNS, SUPPLY, GOES_IN, COMES_OUT = (WORDS[n] for n in ("spare", "runs", "supply", "goes_in", "comes_out"))
 STATISTICS = EXTREME | MEAN | SPREAD
 STAGE, PUMP, EXHAUST, CABINET, COLD = (WORDS[n] for n in ("stage", "pump", "exhaust", "cabinet", "cold"))
-SPOT, LOGGER, OIL = WORDS["spot"], WORDS["logger"], WORDS["oil"]
+SPOT, LOGGER, OIL, ROOMS = (WORDS[n] for n in ("spot", "logger", "oil", "rooms"))
 INSTRUMENT |= CABINET | LOGGER
 PHRASES = {
     re.compile(rf"(?:(?<![^\W\d_])|(?<=[a-z])(?=[A-Z]))(?i:{phrase.replace(' ', '[ _-]?')})(?![a-zß-ÿ])"): word

@@ -169,8 +169,9 @@ def tests_of(source: Source) -> list[Source]:
         rows = [np.flatnonzero(np.isfinite(clock.seconds)) for clock in clocks if clock]
         return [_part(replace(whole, cells=cells), some, note) for cells, some in zip(parts, rows, strict=True)]
     kinds = [q for label in source.labels.values() for q in quantities_of(label)[:1]]
-    each = "temperature" in kinds and len(kinds) > 1  # no sensor's alone
     ids = [n for n in source.cells if not source.is_numeric(n) or {"id", "index"} & {*tokens(n)}]
+    read = [n for n in source.cells if n not in ids and not is_time(source.labels[n])]
+    each = "temperature" in kinds and len(read) > 1  # no sensor's alone
     words = {n: np.array([*map(str, source.cells[n])]) for n in ids if each}
     words = {n: w for n, w in words.items() if 1 < len({*w.tolist()}) <= MACHINES}
     clock = _guessed_clock(source) if words else None

@@ -69,11 +69,15 @@ LEAST = 3  # readings of a column
 ROOM_C = (-50.0, 120.0)  # degC at which machines are started, in the cold and in an oven
 ANGLE = re.compile(r"(?i)theta(?:[_ ]?[a-z]{0,2}|[_ ]?(?:mech|elec|el|rot))$")  # of a rotor, rather than a temperature
 OMEGA = re.compile(r"(?<=\.)w$|^w(?=$|_(?:m|r|mot|rotor|shaft|el)$)")  # beside a torque
+VOLTS = re.compile(r"(?<=\.)v$")  # dc.v beside dc.i
 HEATER = re.compile(r"[QH](\d)")  # beside T of the same number
 LOAD = re.compile(r"T_?(?:load|last|mech|em|brake|shaft)")  # of a torque, where its readings are no temperature's
 AXES = ({"id", "iq"}, {"ialpha", "ibeta"})  # components whose squares add up to the current's
 OTHER_UNITS = {  # of loggers, that no table of a sheet lists: for pint
-    "power": ("mW", "MW", "hp", "metric_horsepower"),
+    "temperature": ("mK",),
+    "current": ("uA",),
+    "voltage": ("uV",),
+    "power": ("uW", "mW", "MW", "hp", "metric_horsepower"),
     "torque": ("mN*m", "cN*m", "lbf*ft"),
     "speed": ("krpm", "deg/s"),
     "water_flow": ("l/h", "l/s", "gallon/min", "ml/min", "ml/s"),
@@ -394,7 +398,7 @@ def guess(source: Source, column: str, target: Target) -> Guess:
     """A column by itself."""
     if odd := _left_out(source, column):
         return Guess(column, "", doubt=odd)
-    label, unit_text = source.labels[column], source.units[column]
+    label, unit_text = VOLTS.sub("voltage", source.labels[column]), source.units[column]
     if OMEGA.search(label) and any("torque" in quantities_of(other) for other in source.labels.values()):
         label = OMEGA.sub("omega", label)
     heater = HEATER.fullmatch(label) if not unit_text else None
@@ -505,7 +509,12 @@ def _left_out(source: Source, column: str) -> str:
         return "a compass heading, beside a place on the map"
     if words & SPREAD:
         return "a spread of readings, not a reading"
-    if (odd := words & (NOTHING | RATIO if unit == "%" else NOTHING)) and unit in WEAK:
+    switched = (
+        source.is_switch(column)
+        and {0.0, 1.0} <= {*values.tolist()}
+        and (is_of_flow(label) or {"share", "power"} & {*quantities})
+    )  # "Fan Status"
+    if (odd := words & (NOTHING | RATIO if unit == "%" else NOTHING)) and unit in WEAK and not switched:
         return f"'{sorted(odd)[0]}' is nothing a model reads"
     identifies = "id" in words and not unit_text and bool((values[np.isfinite(values)] % 1 == 0).all())
     identifies &= _counts_on(source, column) or {*values} == {values[0]} - {0.0}
@@ -533,7 +542,8 @@ def _in_fahrenheit(source: Source, every: list[Guess]) -> list[Guess]:
         return [replace(g, doubt=small) if g.column in hot and g.used else g for g in every]
     starts = {c: v[0] for c, g in hot.items() if (v := (r := in_memory(source, g))[np.isfinite(r)]).size}
     rooms = [c for c in starts if Role.AMBIENT in roles_of(source.labels[c])[:1]]
-    alike = len(starts) > 1 and np.ptp([*starts.values()]) < ALIKE_F
+    alike = np.ptp([*starts.values()] or [ALIKE_F, 0.0]) < ALIKE_F
+    alike &= len(starts) > 1 or not any(source.units[c] for c in hot)
     if not (rooms or alike) or not all(ROOM_F[0] < s < ROOM_F[1] for s in starts.values()):
         return every
     return [_fahrenheit(source, g, bool(rooms)) if g.column in hot else g for g in every]

@@ -29,6 +29,7 @@ SCALES = ((1.8, 32.0), (1.0, 273.15), (10.0, 0.0), (0.1, 0.0))  # degF, K and te
 START_K = 8.0  # between columns of one machine at rest
 LIMITS = (-40.0, 250.0)  # degC of what has no unit
 STEP = 0.2  # of its span: a temperature does not jump by more from row to row
+USUAL = 95.0  # per cent of its steps
 DECIMALS = 5  # that loggers write
 COARSE = 12  # different values: fewer are a state or a step
 BLOCKS = 200  # of a record, over which readings are averaged
@@ -194,7 +195,8 @@ def is_like_temperature(values: Array, starts: Sequence[float], band_K: float = 
     if values.size < COARSE or np.unique(values).size < COARSE or not (values % 1).any():
         return False
     low, high = (min(starts), max(starts)) if starts else (10.0, 35.0)
-    smooth = float(np.max(np.abs(np.diff(values)))) < STEP * float(np.ptp(values)) + 1.0
+    step = float(np.percentile(np.abs(np.diff(values)), USUAL))  # but for a few jumps, as of a probe that is moved
+    smooth = step < STEP * float(np.ptp(values)) + 1.0
     inside = LIMITS[0] < float(values.min()) and float(values.max()) < LIMITS[1]
     return smooth and inside and low - band_K < float(np.median(values[:5])) < high + band_K
 

@@ -28,6 +28,7 @@ from measured.headers.words import (
     OIL,
     OUTER,
     QUANTITY,
+    ROOMS,
     is_setpoint,
     is_spoken,
     is_within,
@@ -35,7 +36,18 @@ from measured.headers.words import (
     roles_of,
     tokens,
 )
-from measured.importing.guess import AS_WINDING, AXES, DEAD, OF_INSTRUMENT, ON_OFF, UNTOLD, Guess, in_memory, is_whole
+from measured.importing.guess import (
+    AS_WINDING,
+    AXES,
+    CANNOT_BE,
+    DEAD,
+    OF_INSTRUMENT,
+    ON_OFF,
+    UNTOLD,
+    Guess,
+    in_memory,
+    is_whole,
+)
 from measured.importing.relations import names_of
 from measured.importing.source import Source
 
@@ -145,6 +157,9 @@ def of_machine(columns: Columns) -> Columns:
     inside = {label for label in rooms if not is_within(label, OUTER)}
     if inside < rooms and not any(roles_of(label := s.labels[g.column]) or is_whole(label) for s, g in parts):
         columns = _as_parts(columns, inside)
+    if not rooms and any(is_spoken(s.labels[g.column], ROOMS) for s, g in parts):
+        out = {g.column for s, g in parts if {*tokens(s.labels[g.column])} - QUANTITY["temperature"] == {"out"}}
+        columns = [(s, replace(g, place=g.place or "ambient") if g.column in out else g) for s, g in columns]
     columns = _as_parts(columns, _warmed_oil(every))
     if all(place in ("", *BOUNDARIES.values()) for *_, place in every):
         fluids = {s.labels[g.column] for s, g, place in every if place == "coolant" and not g.place}
@@ -205,7 +220,8 @@ def starter(columns: Columns, name: str, span_s: float) -> FirstNetwork:
     if not hot:
         files = ", ".join(dict.fromkeys(str(source.file) for source, _ in columns))
         doubted = [(g, s.labels[g.column]) for s, g in columns if g.doubt]
-        lost = [g for g, n in doubted if g.doubt == OF_INSTRUMENT or roles_of(n) or "temperature" in quantities_of(n)]
+        broken = (OF_INSTRUMENT, f"as temperature {CANNOT_BE}")
+        lost = [g for g, n in doubted if g.doubt.endswith(broken) or roles_of(n) or "temperature" in quantities_of(n)]
         lost.sort(key=lambda g: g.doubt != OF_INSTRUMENT)
         doubts = (f"; '{g.column}' is left out: {g.doubt}" for g in lost if not g.feeds)
         what = "no column is a temperature of a machine" + next(doubts, "")

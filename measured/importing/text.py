@@ -54,6 +54,12 @@ ARROW = re.compile(
     r"|(\d{1,4}[-/.]\d{1,2}[-/.]\d{1,4} \d{1,2}:\d\d(?::\d\d)?)\s+(?=[-+]?\d\S*(?:[;|\t]|,\s)))",
     re.MULTILINE,
 )
+# A date and a time with another sign than a blank between, after a program's level and name, or before " - ".
+_DAY, _TIME = r"\d{1,4}[-/.]\d{1,2}[-/.]\d{1,4}", r"\d{1,2}:\d\d:[\d.]+"
+STAMP = re.compile(
+    rf"^(?:[A-Z]+:\w*:|(?={_DAY}[-@])|(?={_DAY} {_TIME} - ))({_DAY})[-@ ](\d{{1,2}}:\d\d:)(\d+)([.\d]*)( - )?",
+    re.MULTILINE,
+)
 FORTRAN = re.compile(r"(?<=[.\d]\d)[Dd](?=[-+]\d\d\b)")  # 2.4D+01
 KEYED = re.compile(r"\s*([^\W\d][^:=,;\t]*?)\s*[:=]\s*(\S.*)")
 BOTH_SIGNS = re.compile(r"(?<![\d.:/-])\d+\.\d+(?![\d.:/-])")  # a number with a point, which is not a date
@@ -96,6 +102,10 @@ def text_table(file: Path) -> tuple[Layout, Columns, list[str], float | None]:
         lines = lines.edited(lambda line: line if line.strip() else "")
     if FORTRAN.search(start):
         lines = lines.edited(lambda line: FORTRAN.sub("E", line))
+    if STAMP.search(start):
+        lines = lines.edited(
+            lambda line: STAMP.sub(lambda m: f"{m[1]} {m[2]}{m[3].zfill(2)}{m[4]}" + "\t" * bool(m[5]), line)
+        )
     if ARROW.search(start):
         lines = lines.edited(_parted)
     if len({point[1] for point in POINT.finditer(start)}) == 1:
@@ -125,6 +135,8 @@ def text_table(file: Path) -> tuple[Layout, Columns, list[str], float | None]:
         unlike = f"{file.name}: {len(every) - len(readings)} lines without the names of the others are left out"
         notes += [unlike] * (len(readings) < len(every))
         return Layout(tuple(keys), ("",) * len(keys), 0, len(keys)), _raw(readings, len(keys)), notes, None
+    if cells[1:] and len(cells[0]) == 1:  # one word, whose sign is not that of the readings
+        cells[0] = next((o for s in DELIMITERS if len(o := split_cells(head[:1], s)[0]) == len(cells[1])), cells[0])
     plan = layout(cells, str(file))
     if not any(plan.names):  # names parted by another sign than the readings, or by one blank where those have several
         lines_over = [bare for line in head[: plan.first] if (bare := line.strip("#%/ \n"))]

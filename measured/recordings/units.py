@@ -39,7 +39,7 @@ QUANTITIES: dict[str, Quantity] = {
     "resistance": Quantity({"ohm": (1, 0), "mohm": (1e-3, 0), "kohm": (1e3, 0)}),
     "back_emf": Quantity({"V": (1, 0), "mV": (1e-3, 0), "kV": (1e3, 0)}),
     "frequency": Quantity({"Hz": (1, 0), "kHz": (1e3, 0)}, "switching_Hz"),
-    "share": Quantity({"%": (1, 0), "1": (100, 0)}, "share_percent"),
+    "share": Quantity({"%": (1, 0), "1": (100, 0), "W/m2": (0.1, 0)}, "share_percent"),  # of a sun of 1000 W/m2
     "flow_share": Quantity({"%": (1, 0), "1": (100, 0)}, "flow_percent"),
     "fraction": Quantity({"1": (1, 0), "%": (0.01, 0)}),
     "time": Quantity({"s": (1, 0), "ms": (1e-3, 0), "min": (60, 0), "h": (3600, 0)}),

@@ -1069,3 +1069,89 @@ def test_columns_of_instants_alone_before_whole_numbers_end_in_a_message(tmp_pat
     lines = [f"28.03.2026 10:00:{k:02d} {89 - 8 * (k > 2)} {93 - 10 * (k > 2)}" for k in range(7)]
     with pytest.raises(InputError, match="neither name nor unit"):
         of_lines(tmp_path, lines)
+
+
+def test_the_sun_is_an_input_in_parts_of_1000_watts(tmp_path):
+    header = "t [s],T_ambient [C],T_module [C],{}"
+    folder, _ = written(tmp_path, table(header.format("Irradiance [W/m2]"), S["t"], S["A"], S["W"], 80 * S["I"]))
+    assert folder.case.tests[0].inputs["share_percent"].max() == pytest.approx(8 * S["I"].max())
+    (tmp_path / "made").rename(tmp_path / "before")
+    written(tmp_path, table(header.format("Solar radiation (W/m^2)"), S["t"], S["A"], S["W"], 80 * S["I"]))
+    assert goes(json.loads((tmp_path / "new.json").read_text()))["Solar radiation (W/m^2)"] == "share_percent"
+
+
+def test_one_temperature_that_starts_near_70_without_a_unit_is_doubted(tmp_path, capsys):
+    written(tmp_path, table("t [s],temperature,current", S["t"], 32 + 1.8 * S["W"], S["I"]))
+    assert "'temperature': or degF, by its values" in " ".join(capsys.readouterr().out.split())
+
+
+def test_millikelvins_are_refused_by_their_readings(tmp_path):
+    with pytest.raises(InputError, match=r"'MXC \[mK\]' is left out: -273.* as temperature cannot be right"):
+        written(tmp_path, table("t [s],MXC [mK],Still [mK]", S["t"], S["W"], 700 + S["W"]))
+
+
+def test_air_inside_is_a_part_where_air_outside_is_recorded(tmp_path):
+    header = "t [s],internal_air,external_air,internal_wall,heater_power"
+    _, document = written(tmp_path, table(header, S["t"], S["H"], S["A"] - 10, S["H"] - 1, 100 * S["I"]))
+    places = goes(document)
+    assert [places[c] for c in ("internal_air", "external_air")] == ["internal-air", "ambient"]
+
+
+def test_a_letter_behind_a_point_is_a_voltage(tmp_path):
+    text = table("t [s],T.motor,T.amb,dc.v,dc.i", S["t"], S["W"], S["A"], 48 - S["I"] / 10, S["I"])
+    assert goes(written(tmp_path, text)[1])["dc.v"] == "voltage_V"
+
+
+@pytest.mark.parametrize("line", ["{d}-10:{m:02d}:{s}.5,{c:.2f}", "{d}@10:{m:02d}:{s} - Temp Top :{c:.2f} C"])
+@pytest.mark.parametrize("name", ["", "INFO:root:"])
+def test_a_date_and_a_time_with_another_sign_between(tmp_path, line, name):
+    rows = [line.format(d="2026-03-21", m=k // 6, s=10 * (k % 6), c=20 + k**0.7) for k in range(40)]
+    _, document = of_lines(tmp_path, [f"{name}{row}" for row in rows])
+    assert document["tests"][0]["duration_s"] == pytest.approx(390.0)
+
+
+def test_commas_between_names_over_blanks_between_readings(tmp_path):
+    lines = ["timestamp,temperature", *(f"2026-03-21T10:{k:02d}:05.25 {20 + k**0.7:.3f}" for k in range(40))]
+    assert goes(of_lines(tmp_path, lines)[1]) == {"temperature": "part"}
+
+
+def test_microamperes_and_a_letter_behind_temp_are_units(tmp_path):
+    header = "t [s],Current (µA),Voltage (µV),temp c,temp f"
+    text = table(header, S["t"], 1e6 * S["I"], 1e6 * (16 - S["I"] / 50), S["W"], 32 + 1.8 * S["W"] + np.sin(S["t"]))
+    folder, document = written(tmp_path, text)
+    assert folder.case.tests[0].inputs["current_A"].max() == pytest.approx(S["I"].max(), rel=1e-3)
+    assert {c["column"]: c["unit"] for c in document["tests"][0]["columns"]}["temp f"] == "degF"
+
+
+def test_a_fan_that_is_on_and_off_in_words_is_an_input(tmp_path):
+    fan = "\n".join(f"{t},{w:.1f},{'on' if i else 'off'}" for t, w, i in zip(S["t"], S["W"], S["I"] > 0))
+    _, document = written(tmp_path, f"t [s],Current Temp,Fan Status\n{fan}\n")
+    assert goes(document) == {"Current Temp": "part", "Fan Status": "flow_percent"}
+
+
+def test_zones_with_two_readings_in_every_row_are_tests(tmp_path):
+    rows = [
+        f"2026-03-21 {h:02d}:00:00,{z},{20 + n + h**0.5:.2f},{h % 7}"
+        for h in range(24)
+        for n, z in enumerate(["Hall", "Court", "Quad"])
+    ]
+    folder, document = of_lines(tmp_path, ["timestamp,zone,temp,uv", *rows])
+    assert len(folder.case.tests) == 3
+    assert goes(document) == {"temp": "part"}
+
+
+def test_what_is_out_is_the_open_air_beside_rooms_of_a_house(tmp_path):
+    header = "t [s],T_out,T_kitchen,T_brine_out,power [W]"
+    _, document = written(tmp_path, table(header, S["t"], S["A"] - 20, S["H"], S["A"] - 22, 100 * S["I"]))
+    assert goes(document)["T_out"] == "ambient"
+
+
+def test_probes_that_are_moved_once_are_temperatures_by_their_readings(tmp_path):
+    moved = [
+        np.where(S["t"] > at * S["t"][-1], 70 * np.exp(-S["t"] / 3 / S["t"][-1]), 22 + n)
+        for n, at in ((0, 0.1), (3, 0.2))
+    ]
+    _, document = written(
+        tmp_path, table("t [s],Sensor 2,Sensor 5", S["t"], moved[0] + S["t"] / 1e4, moved[1] + S["t"] / 1e4)
+    )
+    assert goes(document) == {"Sensor 2": "part-2", "Sensor 5": "part-5"}
