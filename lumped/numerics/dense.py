@@ -13,7 +13,7 @@ from typing import NamedTuple
 import numpy as np
 
 from geom.arrays import Array, Ints, Mask
-from lumped.numerics.jit import inner, inner_apart, inner_reordered, pasted
+from lumped.numerics.jit import inner, inner_noalias, inner_reordered, pasted
 
 GROUP = 4  # rows, columns
 SMALL = 1e-3  # of all behind it in its row: UMFPACK's for matrices of symmetric pattern (Davis 2004)
@@ -122,9 +122,9 @@ def lu(L, slot):
         a = A[i]
         for k in range(i - i % GROUP, i):
             a[k] *= over[k]
-            _taken(a[k], A[k], a, k + 1, i - i % GROUP + GROUP)
+            _subtract(a[k], A[k], a, k + 1, i - i % GROUP + GROUP)
             for s in range(S.after[kind, i // GROUP], S.after[kind, i // GROUP + 1]):
-                _taken(a[k], A[k], a, S.first[s], S.last[s])
+                _subtract(a[k], A[k], a, S.first[s], S.last[s])
         pivot[i] = i
         if abs(a[i]) < SMALL * _total(a, i + 1):
             pivot[i], kind = _largest(a, i), FULL
@@ -177,7 +177,7 @@ def _four_by_four(A, i, k, X, first, last):
     _less(A, i, k, X[k], X[k + 1], X[k + 2], X[k + 3], X[i], X[i + 1], X[i + 2], X[i + 3], first, last)
 
 
-@inner_apart
+@inner_noalias
 def _less(A, i, k, x0, x1, x2, x3, y0, y1, y2, y3, first, last):
     a0, a1, a2, a3 = A[i, k], A[i, k + 1], A[i, k + 2], A[i, k + 3]
     b0, b1, b2, b3 = A[i + 1, k], A[i + 1, k + 1], A[i + 1, k + 2], A[i + 1, k + 3]
@@ -263,21 +263,21 @@ def matvec(A, x, out):
         out[i] = -acc
 
 
-@inner_apart
-def _taken(c, x, y, first, last):
+@inner_noalias
+def _subtract(c, x, y, first, last):
     """y -= c x from one column to another."""
     for j in range(first, last):
         y[j] -= c * x[j]
 
 
-@inner_apart
+@inner_noalias
 def axpy(a, x, y):
     if a != 0.0:
         for j in range(x.size):
             y[j] += a * x[j]
 
 
-@inner_apart
+@inner_noalias
 def copy(x, y):
     """y = x."""
     for j in range(x.size):

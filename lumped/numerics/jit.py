@@ -50,7 +50,7 @@ pasted = njit(**_HIDDEN, inline="always")
 inner_reordered = njit(**_HIDDEN, fastmath={"reassoc", "contract"})
 
 
-class _Apart(Compiler):
+class _NoAlias(Compiler):
     """What is written is none of what is read: else a processor would have to look before every loop."""
 
     def define_pipelines(self) -> Any:
@@ -58,5 +58,5 @@ class _Apart(Compiler):
         return super().define_pipelines()
 
 
-inner_apart = njit(**_HIDDEN, fastmath={"reassoc", "contract"}, pipeline_class=_Apart)  # for arrays that are apart
+inner_noalias = njit(**_HIDDEN, fastmath={"reassoc", "contract"}, pipeline_class=_NoAlias)  # for arrays that are apart
 inner_finite = njit(**_HIDDEN, fastmath={"reassoc", "contract", "nnan", "nsz"})
