@@ -29,7 +29,6 @@ from lumped.numerics.tangents import differentiate
 from lumped.numerics.terms import Forcing
 
 PORTION = 4096  # steps whose states are kept for their tangents
-ABREAST = 8  # columns of tangents are filled up to whole vectors of a processor: what is left over is done one by one
 FACTORS = 2**18  # numbers of the LU of those steps, which their tangents take too: 2 MB, what a core has for itself
 
 
@@ -186,15 +185,14 @@ class _Course:
         self.core = core = reordered(core)
         self.time = np.asarray(record.time, float)
         nt, n, nb, nr = self.time.size, core.C.size, core.forcing.u.shape[1], core.rows.start.size - 1
-        self.tangents = core.tangents.first.shape[1]
-        p = self.tangents + -self.tangents % ABREAST
+        self.tangents = p = core.tangents.first.shape[1]
         self.z, self.y = np.empty((nt if keep_states else 0, n + nb)), np.zeros((nt, nr))
-        self.dy = np.zeros((nt, nr, p))
         self.order = np.concatenate([core.order, np.arange(n, n + nb)])
         self.place = np.argsort(self.order)
         x0, u0 = (begin.x if begin else start_state(network, record))[core.order], core.forcing.u[0]
         self.both, self.scratch = stages(x0, u0, core.terms), work(n, nb, core.terms, 0)
         self.moved = (stages(x0, u0, core.terms), work(n, nb, core.terms, p)) if p else (self.both, self.scratch)
+        self.dy = np.zeros((nt, nr, self.moved[1].D.shape[1]))
         most = min(core.forcing.time.size * 2 if steps is None else steps.knot.size, portion)
         self.trace = _trace(min(most, max(FACTORS // n**2, 1)) if p else most, core, nb, bool(p))
         self.position = kernel.Position(np.zeros(6, np.int64), np.array([0.0, -1.0, 1e300, 1e300]))

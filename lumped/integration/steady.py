@@ -70,7 +70,7 @@ def steady(
     if not rests or not _comes_to_rest(scratch.G[:, :n]):
         why = "a node nothing holds, or thermal runaway"
         raise NoSolution(f"{network.title} does not come to rest: {why}")
-    z, dz = both.z[0, :-1], scratch.D
+    z, dz = both.z[0, :-1], scratch.D[:, :p]
     tell_reach(core, z)
     y, dy = [r.at(z) for r in rows], [r.weights @ dz[r.index] for r in rows]
     return Steady((*network.states, *network.boundaries), z, np.array(y), np.reshape(dy, (len(rows), p)) if p else None)

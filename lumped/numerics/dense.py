@@ -1,7 +1,8 @@
 """LU that skips zeros: condensed networks are two thirds to nine tenths zeros and n is at most some hundreds.
 
 Unknowns are eliminated in an order in which few zeros fill in, columns swapped only where a diagonal is small.
-Rows of U are taken in groups: shapes of one part have nearly the same neighbours; a row is written once for all four.
+Rows and columns are taken in groups, the last filled up with the identity: shapes of one part have nearly the same
+neighbours, and what a group of rows takes out of another is sixteen products for every column that is read.
 """
 
 from __future__ import annotations
@@ -12,9 +13,9 @@ from typing import NamedTuple
 import numpy as np
 
 from geom.arrays import Array, Ints, Mask
-from lumped.numerics.jit import inner, inner_reordered
+from lumped.numerics.jit import inner, inner_noalias, inner_reordered, pasted
 
-GROUP = 4  # rows of U
+GROUP = 4  # rows, columns
 SMALL = 1e-3  # of all behind it in its row: UMFPACK's for matrices of symmetric pattern (Davis 2004)
 GAP = 8  # columns: a loop over as many zeros costs less than to begin another
 SPARSE, FULL = range(2)
@@ -23,7 +24,7 @@ SPARSE, FULL = range(2)
 class Structure(NamedTuple):
     """Where an LU has entries: [SPARSE] as its matrix lets one expect, [FULL] once columns were swapped.
 
-    begin (2, n + 1), group : of every row of L its whole groups of columns, numbers
+    begin (2, groups + 1), group : of every group of rows of L the groups of columns, numbers
     after (2, groups + 1), first, last : of every group of rows of U the stretches behind it, whole groups of columns
     """
 
@@ -35,23 +36,24 @@ class Structure(NamedTuple):
 
 
 class Factored(NamedTuple):
-    """Some LU, each in a slot (k).  A (k, n, n), its rows filled up to whole groups;  over (k, n) : 1 / diagonal of U
+    """Some LU, each in a slot (k).  A (k, n, n), n filled up to whole groups;  over (k, n) : 1 / diagonal of U
 
-    pivot (k, n) : the column that took a column's place;  kind (k,) SPARSE or FULL
+    pivot (k, n) : the column that took a column's place;  kind (k,) SPARSE or FULL;  x (n,) scratch
     """
 
     A: Array
     over: Array
     pivot: Ints
     kind: Ints
+    x: Array
     structure: Structure
 
 
 def factored(slots: int, structure: Structure) -> Factored:
     """Room for as many LU of one structure."""
-    n = structure.begin.shape[1] - 1
-    A = np.zeros((slots, n, n + -n % GROUP))
-    return Factored(A, np.zeros((slots, n)), np.zeros((slots, n), np.int64), np.zeros(slots, np.int64), structure)
+    n = GROUP * (structure.begin.shape[1] - 1)
+    over, pivot = np.zeros((slots, n)), np.zeros((slots, n), np.int64)
+    return Factored(np.zeros((slots, n, n)), over, pivot, np.zeros(slots, np.int64), np.zeros(n), structure)
 
 
 def least_fill(touches: Mask) -> tuple[Ints, Structure]:
@@ -72,6 +74,7 @@ def least_fill(touches: Mask) -> tuple[Ints, Structure]:
 
 def structured(filled: Mask) -> Structure:
     """From where U has entries behind its diagonal (n, n), as L has them below it."""
+    filled = np.pad(filled, (0, -len(filled) % GROUP))
     n, whole = len(filled), len(filled) // GROUP
     begin: list[Ints] = []
     after: list[Ints] = []
@@ -79,7 +82,7 @@ def structured(filled: Mask) -> Structure:
     stretches: list[tuple[int, int]] = []
     for U in (filled, np.triu(np.ones((n, n), bool), 1)):
         rows = [np.asarray(U[GROUP * g : GROUP * g + GROUP].any(axis=0)) for g in range(whole)]
-        below = [[g for g in range(i // GROUP) if rows[g][i]] for i in range(n)]
+        below = [[g for g in range(i) if rows[g][GROUP * i : GROUP * i + GROUP].any()] for i in range(whole)]
         ends = [_stretches(rows[g], GROUP * (g + 1)) for g in range(whole)]
         begin.append(len(group) + np.cumsum([0, *(len(x) for x in below)]))
         after.append(len(stretches) + np.cumsum([0, *(len(x) for x in ends)]))
@@ -109,17 +112,19 @@ def _stretches(entries: Mask, start: int) -> list[tuple[int, int]]:
 
 @inner
 def lu(L, slot):
-    """LU in place, row by row; columns swapped only where a diagonal is SMALL. False if singular."""
+    """LU in place, group by group of rows; columns swapped only where a diagonal is SMALL. False if singular."""
     A, over, pivot, S, kind = L.A[slot], L.over[slot], L.pivot[slot], L.structure, SPARSE
     n = len(A)
     for i in range(n):
+        if i % GROUP == 0:
+            for q in range(S.begin[kind, i // GROUP], S.begin[kind, i // GROUP + 1]):
+                _eliminated(A, over, S, kind, S.group[q], i)
         a = A[i]
-        for q in range(S.begin[kind, i], S.begin[kind, i + 1]):
-            _eliminated(A, over, S, kind, S.group[q], a)
         for k in range(i - i % GROUP, i):
             a[k] *= over[k]
-            for j in range(k + 1, n):
-                a[j] -= a[k] * A[k, j]
+            _subtract(a[k], A[k], a, k + 1, i - i % GROUP + GROUP)
+            for s in range(S.after[kind, i // GROUP], S.after[kind, i // GROUP + 1]):
+                _subtract(a[k], A[k], a, S.first[s], S.last[s])
         pivot[i] = i
         if abs(a[i]) < SMALL * _total(a, i + 1):
             pivot[i], kind = _largest(a, i), FULL
@@ -152,22 +157,38 @@ def _largest(a, first):
 
 
 @inner_reordered
-def _eliminated(A, over, S, kind, g, a):
-    """Row a less what a group of rows takes out of it; what it takes is left in a."""
+def _eliminated(A, over, S, kind, g, i):
+    """The group of rows from i less what group g of rows takes out of it; what it takes is left there."""
     k = GROUP * g
-    u0, u1, u2, u3 = A[k], A[k + 1], A[k + 2], A[k + 3]
-    c0 = a[k] * over[k]
-    c1 = (a[k + 1] - c0 * u0[k + 1]) * over[k + 1]
-    c2 = (a[k + 2] - c0 * u0[k + 2] - c1 * u1[k + 2]) * over[k + 2]
-    c3 = (a[k + 3] - c0 * u0[k + 3] - c1 * u1[k + 3] - c2 * u2[k + 3]) * over[k + 3]
-    a[k], a[k + 1], a[k + 2], a[k + 3] = c0, c1, c2, c3
+    for r in range(i, i + GROUP):
+        a = A[r]
+        a[k] *= over[k]
+        a[k + 1] = (a[k + 1] - a[k] * A[k, k + 1]) * over[k + 1]
+        a[k + 2] = (a[k + 2] - a[k] * A[k, k + 2] - a[k + 1] * A[k + 1, k + 2]) * over[k + 2]
+        last = a[k + 3] - a[k] * A[k, k + 3] - a[k + 1] * A[k + 1, k + 3] - a[k + 2] * A[k + 2, k + 3]
+        a[k + 3] = last * over[k + 3]
     for s in range(S.after[kind, g], S.after[kind, g + 1]):
-        for j in range(S.first[s], S.last[s], GROUP):
-            x0 = a[j] - c0 * u0[j] - c1 * u1[j] - c2 * u2[j] - c3 * u3[j]
-            x1 = a[j + 1] - c0 * u0[j + 1] - c1 * u1[j + 1] - c2 * u2[j + 1] - c3 * u3[j + 1]
-            x2 = a[j + 2] - c0 * u0[j + 2] - c1 * u1[j + 2] - c2 * u2[j + 2] - c3 * u3[j + 2]
-            x3 = a[j + 3] - c0 * u0[j + 3] - c1 * u1[j + 3] - c2 * u2[j + 3] - c3 * u3[j + 3]
-            a[j], a[j + 1], a[j + 2], a[j + 3] = x0, x1, x2, x3
+        _four_by_four(A, i, k, A, S.first[s], S.last[s])
+
+
+@inner
+def _four_by_four(A, i, k, X, first, last):
+    """Group i of rows of X less A[i, k] X[k] of group k, from one column to another."""
+    _less(A, i, k, X[k], X[k + 1], X[k + 2], X[k + 3], X[i], X[i + 1], X[i + 2], X[i + 3], first, last)
+
+
+@inner_noalias
+def _less(A, i, k, x0, x1, x2, x3, y0, y1, y2, y3, first, last):
+    a0, a1, a2, a3 = A[i, k], A[i, k + 1], A[i, k + 2], A[i, k + 3]
+    b0, b1, b2, b3 = A[i + 1, k], A[i + 1, k + 1], A[i + 1, k + 2], A[i + 1, k + 3]
+    c0, c1, c2, c3 = A[i + 2, k], A[i + 2, k + 1], A[i + 2, k + 2], A[i + 2, k + 3]
+    d0, d1, d2, d3 = A[i + 3, k], A[i + 3, k + 1], A[i + 3, k + 2], A[i + 3, k + 3]
+    for j in range(first, last):
+        u0, u1, u2, u3 = x0[j], x1[j], x2[j], x3[j]
+        y0[j] -= a0 * u0 + a1 * u1 + a2 * u2 + a3 * u3
+        y1[j] -= b0 * u0 + b1 * u1 + b2 * u2 + b3 * u3
+        y2[j] -= c0 * u0 + c1 * u1 + c2 * u2 + c3 * u3
+        y3[j] -= d0 * u0 + d1 * u1 + d2 * u2 + d3 * u3
 
 
 @inner
@@ -178,32 +199,58 @@ def shifted(A, c, d, L, slot):
         for j in range(d.size):
             out[i, j] = c * A[i, j]
         out[i, i] += d[i]
+    fill(out, d.size)
+
+
+@inner
+def fill(A, n):
+    """The identity behind n rows and columns of a matrix."""
+    for i in range(len(A)):
+        for j in range(n if i < n else 0, len(A)):
+            A[i, j] = 1.0 if i == j else 0.0
 
 
 @inner_reordered
 def solve(L, slot, b):
     """One right-hand side, in place."""
-    A, over, pivot, S, kind = L.A[slot], L.over[slot], L.pivot[slot], L.structure, L.kind[slot]
+    A, over, pivot, S, kind, x = L.A[slot], L.over[slot], L.pivot[slot], L.structure, L.kind[slot], L.x
     n = len(A)
     for i in range(n):
-        acc = 0.0
-        for q in range(S.begin[kind, i], S.begin[kind, i + 1]):
-            k = GROUP * S.group[q]
-            acc += A[i, k] * b[k] + A[i, k + 1] * b[k + 1] + A[i, k + 2] * b[k + 2] + A[i, k + 3] * b[k + 3]
-        for k in range(i - i % GROUP, i):
-            acc += A[i, k] * b[k]
-        b[i] -= acc
+        x[i] = b[i] if i < b.size else 0.0
+    for i in range(0, n, GROUP):
+        s = 0.0, 0.0, 0.0, 0.0
+        for q in range(S.begin[kind, i // GROUP], S.begin[kind, i // GROUP + 1]):
+            s = _products(A, i, GROUP * S.group[q], x, s)
+        x[i] -= s[0]
+        x[i + 1] -= s[1] + A[i + 1, i] * x[i]
+        x[i + 2] -= s[2] + A[i + 2, i] * x[i] + A[i + 2, i + 1] * x[i + 1]
+        x[i + 3] -= s[3] + A[i + 3, i] * x[i] + A[i + 3, i + 1] * x[i + 1] + A[i + 3, i + 2] * x[i + 2]
+    for i in range(n - GROUP, -1, -GROUP):
+        s = 0.0, 0.0, 0.0, 0.0
+        for e in range(S.after[kind, i // GROUP], S.after[kind, i // GROUP + 1]):
+            for j in range(S.first[e], S.last[e], GROUP):
+                s = _products(A, i, j, x, s)
+        x[i + 3] = (x[i + 3] - s[3]) * over[i + 3]
+        x[i + 2] = (x[i + 2] - s[2] - A[i + 2, i + 3] * x[i + 3]) * over[i + 2]
+        x[i + 1] = (x[i + 1] - s[1] - A[i + 1, i + 2] * x[i + 2] - A[i + 1, i + 3] * x[i + 3]) * over[i + 1]
+        last = s[0] + A[i, i + 1] * x[i + 1] + A[i, i + 2] * x[i + 2] + A[i, i + 3] * x[i + 3]
+        x[i] = (x[i] - last) * over[i]
     for i in range(n - 1, -1, -1):
-        g, acc = i // GROUP, 0.0
-        for j in range(i + 1, min(GROUP * (g + 1), n)):
-            acc += A[i, j] * b[j]
-        if GROUP * (g + 1) <= n:
-            for s in range(S.after[kind, g], S.after[kind, g + 1]):
-                for j in range(S.first[s], min(S.last[s], n)):
-                    acc += A[i, j] * b[j]
-        b[i] = (b[i] - acc) * over[i]
-    for i in range(n - 1, -1, -1):
-        b[i], b[pivot[i]] = b[pivot[i]], b[i]
+        x[i], x[pivot[i]] = x[pivot[i]], x[i]
+    for i in range(b.size):
+        b[i] = x[i]
+
+
+@pasted
+def _products(A, i, k, x, s):
+    """s plus what the group of rows from i makes of the group of columns from k."""
+    x0, x1, x2, x3 = x[k], x[k + 1], x[k + 2], x[k + 3]
+    return (
+        s[0] + A[i, k] * x0 + A[i, k + 1] * x1 + A[i, k + 2] * x2 + A[i, k + 3] * x3,
+        s[1] + A[i + 1, k] * x0 + A[i + 1, k + 1] * x1 + A[i + 1, k + 2] * x2 + A[i + 1, k + 3] * x3,
+        s[2] + A[i + 2, k] * x0 + A[i + 2, k + 1] * x1 + A[i + 2, k + 2] * x2 + A[i + 2, k + 3] * x3,
+        s[3] + A[i + 3, k] * x0 + A[i + 3, k + 1] * x1 + A[i + 3, k + 2] * x2 + A[i + 3, k + 3] * x3,
+    )
 
 
 @inner_reordered
@@ -216,55 +263,46 @@ def matvec(A, x, out):
         out[i] = -acc
 
 
-@inner
+@inner_noalias
+def _subtract(c, x, y, first, last):
+    """y -= c x from one column to another."""
+    for j in range(first, last):
+        y[j] -= c * x[j]
+
+
+@inner_noalias
 def axpy(a, x, y):
     if a != 0.0:
         for j in range(x.size):
             y[j] += a * x[j]
 
 
-@inner
+@inner_noalias
 def copy(x, y):
     """y = x."""
     for j in range(x.size):
         y[j] = x[j]
 
 
-@inner_reordered
-def _four(a, j, X, out):
-    """out -= a[j] X[j] + ... of four rows: out is read and written a quarter as often."""
-    a0, a1, a2, a3 = a[j], a[j + 1], a[j + 2], a[j + 3]
-    x0, x1, x2, x3 = X[j], X[j + 1], X[j + 2], X[j + 3]
-    for k in range(out.size):
-        out[k] -= a0 * x0[k] + a1 * x1[k] + a2 * x2[k] + a3 * x3[k]
-
-
-@inner
-def _several(a, first, last, X, out):
-    """out -= sum of a[j] X[j] from first, the beginning of a group, to last."""
-    for j in range(first, last - GROUP + 1, GROUP):
-        _four(a, j, X, out)
-    for j in range(last - (last - first) % GROUP, last):
-        axpy(-a[j], X[j], out)
-
-
 @inner
 def solve_many(L, slot, B):
-    """Right-hand sides in the columns of B (n, p), in place."""
+    """Right-hand sides in the columns of B, in place; rows and columns are filled up to whole groups."""
     A, over, pivot, S, kind = L.A[slot], L.over[slot], L.pivot[slot], L.structure, L.kind[slot]
     n, p = len(B), B[0].size
     for i in range(n):
-        for q in range(S.begin[kind, i], S.begin[kind, i + 1]):
-            _four(A[i], GROUP * S.group[q], B, B[i])
+        if i % GROUP == 0:
+            for q in range(S.begin[kind, i // GROUP], S.begin[kind, i // GROUP + 1]):
+                _four_by_four(A, i, GROUP * S.group[q], B, 0, p)
         for k in range(i - i % GROUP, i):
             axpy(-A[i, k], B[k], B[i])
     for i in range(n - 1, -1, -1):
         g = i // GROUP
-        for j in range(i + 1, min(GROUP * (g + 1), n)):
-            axpy(-A[i, j], B[j], B[i])
-        if GROUP * (g + 1) <= n:
+        if i % GROUP == GROUP - 1:
             for s in range(S.after[kind, g], S.after[kind, g + 1]):
-                _several(A[i], S.first[s], min(S.last[s], n), B, B[i])
+                for j in range(S.first[s], S.last[s], GROUP):
+                    _four_by_four(A, GROUP * g, j, B, 0, p)
+        for j in range(i + 1, GROUP * (g + 1)):
+            axpy(-A[i, j], B[j], B[i])
         for j in range(p):
             B[i, j] *= over[i]
     for i in range(n - 1, -1, -1):

@@ -13,6 +13,7 @@ from pathlib import Path
 from typing import Any
 
 from numba import njit
+from numba.core.compiler import Compiler
 from numba.core.runtime import rtsys
 
 _OPTIONS: dict[str, Any] = {
@@ -47,4 +48,15 @@ _HIDDEN = {**_OPTIONS, "no_cpython_wrapper": True}
 inner = njit(**_HIDDEN)
 pasted = njit(**_HIDDEN, inline="always")
 inner_reordered = njit(**_HIDDEN, fastmath={"reassoc", "contract"})
+
+
+class _NoAlias(Compiler):
+    """What is written is none of what is read: else a processor would have to look before every loop."""
+
+    def define_pipelines(self) -> Any:
+        self.state.flags.noalias = True
+        return super().define_pipelines()
+
+
+inner_noalias = njit(**_HIDDEN, fastmath={"reassoc", "contract"}, pipeline_class=_NoAlias)  # for arrays that are apart
 inner_finite = njit(**_HIDDEN, fastmath={"reassoc", "contract", "nnan", "nsz"})

@@ -18,7 +18,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from lumped.numerics.dense import Factored, dense, factored
+from lumped.numerics.dense import GROUP, Factored, dense, factored
 from lumped.numerics.jit import inner, pasted
 from lumped.numerics.terms import PLACE, Array, Ints, Terms, directional, flow, patterns
 
@@ -39,6 +39,7 @@ END1, END2, END3 = (float(x) for x in _RATES)
 _THROUGH = np.linalg.inv(np.stack([_WEIGHTS @ np.ones(3), _WEIGHTS @ _BETA.sum(axis=1), [0.0, 1.0, 1.0]]))
 INSIDE = np.stack([_THROUGH[:, 0], 0.5 * _THROUGH[:, 1] + _THROUGH[:, 2]], axis=1)
 ROSENBROCK, EULER = 0, 1
+ABREAST = 8  # columns of tangents are filled up to whole vectors of a processor: what is left over is done one by one
 
 
 class Stages(NamedTuple):
@@ -61,7 +62,7 @@ class Work(NamedTuple):
     F (3, n) right-hand side as z;  G, H (n, n + nb) by states and boundaries;  L : an LU for rest
     error (n,) of the step
     heat (2, n) least and most of all sources
-    D (n + nb, p) tangents of states and boundaries, R (4, n, p) of the stages and one more
+    D (n + nb, p) tangents of states and boundaries, R (4, n, p) of the stages and one more, its n filled up to GROUP
     V (nv, p) what patterns and laws see of them
     """
 
@@ -101,6 +102,7 @@ def work(n: int, nb: int, T: Terms, p: int) -> Work:
     """Scratch for n states, nb boundaries, some terms and p tangents."""
     nf = max(T.m.size, int(T.part[:, PLACE].max(initial=0)) + 1)
     G, H = np.zeros((2, n, n + nb))
+    p += -p % ABREAST
     return Work(
         np.zeros((2, nf)),
         np.zeros(nf),
@@ -112,7 +114,7 @@ def work(n: int, nb: int, T: Terms, p: int) -> Work:
         np.zeros(n),
         np.zeros((2, n)),
         np.zeros((n + nb, p)),
-        np.zeros((4, n, p)),
+        np.zeros((4, n + -n % GROUP, p)),
         np.zeros((T.begin.size - 1, p)),
     )
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from lumped.numerics.dense import axpy, copy, lu, solve, solve_many
+from lumped.numerics.dense import axpy, copy, fill, lu, solve, solve_many
 from lumped.numerics.jit import entry, inner, pasted
 from lumped.numerics.stages import finite
 from lumped.numerics.terms import END, ROW, clear, flow, jacobian
@@ -27,6 +27,7 @@ def _newton(T, K0, C, f, a, q):
                 q.F[0, i] = 0.0
                 clear(W[i : i + 1])
                 W[i, i] = 1.0
+        fill(W, n)
         if not lu(q.L, 0):
             return False
         solve(q.L, 0, q.F[0])
@@ -42,7 +43,7 @@ def _newton(T, K0, C, f, a, q):
 @inner
 def outside(B, D, c, out):
     """out -= c B D of the boundaries.  B (n, nb) : what G has in their columns"""
-    n = len(out)
+    n = len(B)
     for i in range(n):
         for b in range(len(D) - n):
             axpy(-c * B[i, b], D[n + b], out[i])

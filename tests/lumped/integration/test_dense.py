@@ -5,7 +5,7 @@ import pytest
 from numba import njit
 from numpy.testing import assert_allclose, assert_array_equal
 
-from lumped.numerics.dense import factored, least_fill, lu, shifted, solve, solve_many
+from lumped.numerics.dense import GROUP, factored, least_fill, lu, shifted, solve, solve_many
 
 BEST_CONDITIONED = 1e6  # of the matrices asked about: ten digits are left
 
@@ -37,19 +37,20 @@ def test_solutions_are_numpys(n, dominant):
     G, d = matrices(n, dominant)
     order, structure = least_fill(G != 0.0)
     G, L, rng = G[np.ix_(order, order)], factored(1, structure), np.random.default_rng(1)
-    d, x, X = d[order], rng.standard_normal(n), rng.standard_normal((n, 5))
+    d, x, X = d[order], rng.standard_normal(n), np.zeros((n + -n % GROUP, 2 * GROUP))
+    X[:n] = rng.standard_normal((n, 2 * GROUP))
     W = 2.0 * G + np.diag(d)
-    exact, several = np.linalg.solve(W, x), np.linalg.solve(W, X)
+    exact, several = np.linalg.solve(W, x), np.linalg.solve(W, X[:n])
     assert solved(G, 2.0, d, L, x, X)
     assert_allclose(x, exact, atol=1e-9 * np.abs(exact).max())
-    assert_allclose(X, several, atol=1e-9 * np.abs(several).max())
-    assert np.all(L.pivot[0] == np.arange(n)) == dominant
+    assert_allclose(X[:n], several, atol=1e-9 * np.abs(several).max())
+    assert np.all(L.pivot[0, :n] == np.arange(n)) == dominant
 
 
 def test_a_singular_matrix_is_told():
     G = np.array([[1.0, 2.0, 0.0], [2.0, 4.0, 0.0], [0.0, 0.0, 1.0]])
     L = factored(1, least_fill(G != 0.0)[1])
-    assert not solved(G, 1.0, np.zeros(3), L, np.ones(3), np.ones((3, 1)))
+    assert not solved(G, 1.0, np.zeros(3), L, np.ones(3), np.ones((GROUP, GROUP)))
 
 
 def test_an_arrow_does_not_fill_in():
@@ -61,6 +62,6 @@ def test_an_arrow_does_not_fill_in():
     assert_array_equal(np.sort(order), np.arange(n))
     assert 0 in order[-2:]
     G, L = G[np.ix_(order, order)], factored(1, structure)
-    assert solved(G, 1.0, np.full(n, float(n)), L, np.ones(n), np.ones((n, 1)))
+    assert solved(G, 1.0, np.full(n, float(n)), L, np.ones(n), np.ones((n, GROUP)))
     assert np.count_nonzero(L.A[0]) == np.count_nonzero(G)
     assert structure.begin[0, -1] < structure.begin[1, -1] - structure.begin[0, -1]
