@@ -391,10 +391,12 @@ def delimiter(lines: list[str]) -> str:
 
     Blanks stand within instants too, so they are it only where no other sign leaves readings nearly everywhere.
     """
-    sample = [line for line in lines if re.search(r"\d", line)]  # names have signs and blanks of their own
     scores, shares = {}, {}
     for sign in (*DELIMITERS, *reversed(BLANKS)):
-        cells = [cell for row in split_cells(sample, sign) if len(row) > 1 for cell in row]
+        rows = (row for row in split_cells(lines, sign) if len(row) > 1)
+        cells = [
+            cell for row in rows if re.search(r"\d", "".join(row)) for cell in row
+        ]  # names have signs of their own
         good = sum(is_reading(cell) or bool((m := KEYED.fullmatch(cell)) and is_reading(m[2])) for cell in cells)
         scores[sign], shares[sign] = (good * good / len(cells), good / len(cells)) if cells else (0.0, 0.0)
     sure = [sign for sign in DELIMITERS if shares[sign] >= 0.9] or [*scores]
