@@ -99,6 +99,13 @@ def test_a_case_finds_the_header_where_a_new_one_does(tmp_path, before, units):
         numbers(table, "T_coil", tmp_path / "a.csv")
 
 
+def test_a_name_over_two_lines_hides_no_sign_between_columns(tmp_path):
+    """Its first half has a digit and an open quotation mark, its second half neither a digit nor a cell."""
+    rows = "".join(f"{k},{20 + k}.5,{1 + k % 3}\n" for k in range(40))
+    (tmp_path / "a.csv").write_text(f'time_s,"winding 1\nhot side",load\n{rows}')
+    assert [len(cells) for cells in read_source(tmp_path / "a.csv").cells.values()] == [40, 40, 40]
+
+
 def test_no_row_under_a_header_is_taken_for_part_of_it(tmp_path):
     """A first row of words is refused by its line, and a header of words stays the header beside a row of them."""
     (tmp_path / "a.csv").write_text("time,T,x,y,z\nstart,OVER,OVER,OVER,OVER\n" + "1,2,3,4,5\n" * 5)
