@@ -65,6 +65,7 @@ COARSEST = 4.0  # timing steps between instants that tell one stretch from anoth
 TANGENT_RANGE = 0.1  # of an event's amplitude: after a larger change its tangent is made anew
 DIRECTIONS = ((1, 0), (0, 1), (1, 1))  # begin, end, both
 MOVES = 8  # of the ends and refitting with them: of a size that was ten times off at first five were needed
+RIVALS, HALF = 2, 0.5  # that are not likely yet: how many get their ends anew, and what they explain of the most
 FITTED = 4  # of the most probable refits: an event in any of them that will be told gets its ends anew
 MOST_KNOTS = 96  # instants at which a repeat may begin at first: each is a column of one run
 FIRST_RUNS = 4  # stretches that tangents like best are run
@@ -297,11 +298,14 @@ def retimed(
     Parameters: `reach_s` test -> how far (s) an end may move at once; `refit` fits a hypothesis anew, to its end.
     """
     P = probabilities(hypotheses, 1.0)
-    order = [i for i in np.argsort(-P, kind="stable") if hypotheses[i].fit and hypotheses[i].members]
-    likely = [i for i in order if P[i] > REPORTED]
-    # a large event between wrong ends explains little: the best ones stay in the race until theirs are right
-    others = sorted(set(order) - set(likely), key=lambda i: -hypotheses[i].log_bayes)
-    few = [hypotheses[i] for i in [*likely, *(i for i in others if len(hypotheses[i].members) == 1)][:FITTED]]
+    refits = [i for i in np.argsort(-P, kind="stable") if hypotheses[i].fit and hypotheses[i].members]
+    likely = [i for i in refits if P[i] > REPORTED]
+    # a large event between wrong ends explains little: those that come near stay in the race until theirs are right
+    least = HALF * max((hypotheses[i].log_bayes for i in refits), default=0.0)
+    near = [
+        i for i in refits if i not in likely and hypotheses[i].log_bayes > least and _is_once(evidence, hypotheses[i])
+    ]
+    few = [hypotheses[i] for i in [*likely, *near[:RIVALS]][:FITTED]]
     fits: dict[int, Fit] = {}
     for _ in range(MOVES):
         earlier, fits = fits, fits_of_events(evidence, few)
@@ -313,6 +317,13 @@ def retimed(
         evidence = joined(evidence, priors, evidence.fit.values, list(new))
         few = [refit(evidence, h) if set(h.members) & set(new) else h for h in few]
     return evidence
+
+
+def _is_once(evidence: Evidence, h: Weighed) -> bool:
+    """Is it one cause, which lasted for one stretch?"""
+    effect = evidence.effects[h.members[0]]
+    once = isinstance(effect, During) and effect.event is not None and len(effect.event.every) == 1
+    return once and len(h.members) == 1
 
 
 def fits_of_events(evidence: Evidence, hypotheses: Sequence[Weighed]) -> dict[int, Fit]:
