@@ -394,9 +394,8 @@ def delimiter(lines: list[str]) -> str:
     scores, shares = {}, {}
     for sign in (*DELIMITERS, *reversed(BLANKS)):
         rows = (row for row in split_cells(lines, sign) if len(row) > 1)
-        cells = [
-            cell for row in rows if re.search(r"\d", "".join(row)) for cell in row
-        ]  # names have signs of their own
+        # without names, which have signs and blanks of their own
+        cells = [cell for row in rows if re.search(r"\d", "".join(row)) for cell in row]
         good = sum(is_reading(cell) or bool((m := KEYED.fullmatch(cell)) and is_reading(m[2])) for cell in cells)
         scores[sign], shares[sign] = (good * good / len(cells), good / len(cells)) if cells else (0.0, 0.0)
     sure = [sign for sign in DELIMITERS if shares[sign] >= 0.9] or [*scores]
