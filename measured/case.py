@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import ClassVar, Literal
+from weakref import WeakValueDictionary
 
 import numpy as np
 
@@ -18,6 +19,7 @@ from lumped.transfer.laws import CLOCK, RUNNING
 from measured.doubt import USUAL, Doubt, Odds
 
 Role = Literal["calibrate", "validate", "hold-out"]
+_SIGNALS: WeakValueDictionary[tuple[str, int, int, int], Signals] = WeakValueDictionary()
 GAP = 10.0  # usual steps: a logger that was silent for longer had stopped
 
 
@@ -107,7 +109,15 @@ class Test:
 
     @cached_property
     def signals(self) -> Signals:
-        """What the laws of a network may read: inputs, time, and that it is this test."""
+        """What the laws of a network may read: inputs, time, and that it is this test. A test with other sensors, blocks
+        or boundaries has the same, with what the laws made of them."""
+        key = self.name, id(self.time), id(self.inputs), id(self.recorded)
+        if (known := _SIGNALS.get(key)) is None:
+            known = _SIGNALS[key] = self._signals()
+            known.made_of = self.time, self.inputs, self.recorded  # their ids are no other object's as long as it lives
+        return known
+
+    def _signals(self) -> Signals:
         fine = self.recorded.now(self) if self.recorded else None
         if self.recorded is None or fine is None:
             return Signals({**self.inputs, **self._beside(self.time)}, self.time.size)

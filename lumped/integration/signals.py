@@ -4,16 +4,18 @@ from __future__ import annotations
 
 from collections import deque
 from collections.abc import Callable, Hashable, Iterable, Mapping, Sequence
+from contextlib import suppress
+from functools import cached_property
 from math import isfinite
 from typing import Any, NamedTuple
-from weakref import ref
+from weakref import WeakKeyDictionary, ref
 
 import numpy as np
 
 from geom.arrays import Array
 from geom.errors import InputError
 from lumped.integration.curve import FAR, NONE, Between, Curve, Moves, between, curve, parabolas, straight
-from lumped.integration.projection import crowded, projected
+from lumped.integration.projection import Grid, projected
 from lumped.numerics.knots import moved
 from lumped.numerics.terms import Forcing
 from lumped.transfer.laws import Fixed, Law
@@ -58,7 +60,7 @@ class Signals(dict[str, Array]):
     wider apart than the samples were recorded, factors are still made of these and keep their integrals.
 
     source : the samples as recorded, of signals that are looked at on other instants
-    missed : of what parabolas may miss between samples, what they may here
+    missed : of what parabolas may miss between samples, what they may here;  made_of : what has to live as long
     """
 
     missed = 1.0
@@ -68,9 +70,11 @@ class Signals(dict[str, Array]):
         self.nt = nt
         self._around: tuple[Signals, Array] | None = None
         self.source: Source | None = None
+        self.made_of: Any = None
         self._is_stretch = False
         self._are_cut = False  # what lies between two of them need not be cut again
         self._known: dict[int, tuple[ref[Law], Curve]] = {}
+        self._equal: WeakKeyDictionary[Law, Curve] = WeakKeyDictionary()
         self._readings: dict[tuple[str, ...], Reading] = {}
         self._finer: dict[bytes, Signals] = {}
         self._drives: deque[tuple[Hashable, Sequence[Curve], tuple[Forcing, Array]]] = deque(maxlen=LAST_DRIVES)
@@ -130,10 +134,18 @@ class Signals(dict[str, Array]):
         curve = self._known.get(id(law))
         if curve is not None and curve[0]() is law:
             return curve[1]
-        new = self._curve_of(name, law)
+        new = self._equal_curve(law) or self._curve_of(name, law)
         if self.nt <= LONG or (law.looks_at_all and not law.by_instant):
             self._known[id(law)] = ref(law, _forgetting(self, id(law))), new
+            with suppress(TypeError):
+                self._equal.setdefault(law, new)
         return new
+
+    def _equal_curve(self, law: Law) -> Curve | None:
+        """That of an equal law, as fits make them anew; None of one that holds arrays, which has no hash."""
+        with suppress(TypeError):
+            return self._equal.get(law)
+        return None
 
     def driven(
         self, how: Hashable, curves: Sequence[Curve], work: Callable[[], tuple[Forcing, Array]]
@@ -167,7 +179,7 @@ class Signals(dict[str, Array]):
             )
         source = self.source
         if not law.looks_at_all:
-            full = np.ones(self.nt, bool) if self._are_cut else crowded(source.at, source.time) if source else None
+            full = np.ones(self.nt, bool) if self._are_cut else self._grid.full if source else None
             read = self._reading(law.reads)
             every = self._factor(name, law, read.halfway, self.nt + read.moves.left.size)
 
@@ -175,7 +187,7 @@ class Signals(dict[str, Array]):
                 return self._factor(name, law, self._between(at), at.size)
 
             near = curve(every, factor, read.moves, read.turns, full, self.missed)
-            return projected(near, source.at, source.signals.curve(name, law), source.time) if source else near
+            return projected(near, source.signals.curve(name, law), self._grid) if source else near
         if self._around and not (law.by_instant and self._is_stretch):
             whole, at = self._around
             value = whole.factor(name, law)
@@ -186,6 +198,12 @@ class Signals(dict[str, Array]):
         value = self._factor(name, law, self, self.nt)
         constant = value.ndim == 1 and bool(np.all(value == value[0]))
         return straight(np.asarray(value[0]) if constant else value)
+
+    @cached_property
+    def _grid(self) -> Grid:
+        """Of signals that are looked at on other instants: these over the samples as recorded."""
+        assert self.source is not None
+        return Grid.of(self.source.at, self.source.time)
 
     def _reading(self, names: tuple[str, ...]) -> Reading:
         """How some inputs run between the samples, worked out once for all laws that read the same."""

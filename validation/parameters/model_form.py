@@ -54,6 +54,9 @@ class ExponentError(Wrapped):
     input: str
     reference: Mapping[str, float]
 
+    def __hash__(self) -> int:
+        return hash((self.base, self.input))  # a mapping has none
+
     @property
     def at_work(self) -> bool:
         """Is the law anything at the reference? One of a flow that turned round is nothing while it runs forwards."""
