@@ -109,13 +109,15 @@ class Test:
 
     @cached_property
     def signals(self) -> Signals:
-        """What the laws of a network may read: inputs, time, and that it is this test. A test with other sensors, blocks
-        or boundaries has the same, with what the laws made of them."""
+        """What the laws of a network may read: inputs, time, and that it is this test.
+
+        A test with other sensors, blocks or boundaries has the same, with what the laws made of them.
+        """
         key = self.name, id(self.time), id(self.inputs), id(self.recorded)
-        if (known := _SIGNALS.get(key)) is None:
-            known = _SIGNALS[key] = self._signals()
-            known.made_of = self.time, self.inputs, self.recorded  # their ids are no other object's as long as it lives
-        return known
+        if (out := _SIGNALS.get(key)) is None:
+            out = _SIGNALS[key] = self._signals()
+            out.made_of = self.time, self.inputs, self.recorded  # their ids are no other object's as long as it lives
+        return out
 
     def _signals(self) -> Signals:
         fine = self.recorded.now(self) if self.recorded else None

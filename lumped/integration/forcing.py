@@ -151,10 +151,10 @@ def _between(time: Array, indices: Ints, curves: Sequence[Curve], wholes: Sequen
 def _knots(time: Array, curves: Sequence[Curve]) -> tuple[Array, Ints]:
     """Positions of the knots, and which sample each of them is (-1: none)."""
     samples = np.arange(time.size)
-    more = [c.inserted for c in curves if c.inserted.size]
+    more = {c.inserted.tobytes(): c.inserted for c in curves if c.inserted.size}  # laws of one input cut alike
     if not more:
         return samples.astype(float), samples
-    between_ = np.unique(np.concatenate(more))
+    between_ = np.unique(np.concatenate(list(more.values())))
     left = between_.astype(np.int64)
     at = np.union1d(samples, between_[time[left + 1] > time[left]])
     whole = at == np.floor(at)

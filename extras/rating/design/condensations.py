@@ -22,14 +22,14 @@ from thermoscope import InputError, Network, plugin as th
 Progress = Callable[[str], None]
 HALVINGS = 6  # of the way to a bound; nearer, a variable says nothing
 SIZE_M, ACROSS = 0.12, 0.5  # elements twice as large as those of a case; temperatures differ by 2 % of the rise
-# Fewer snapshots than a case's: enough to rank designs.
-COARSE = th.Recipe(tolerance=0.03, max_states=110, shifts=(1 / 20, 1 / 700), random_points=1)
 
 
 def coarse_network(machine: th.MachineDescription, progress: Progress) -> Network:
     """Seconds; from the cache where it was made before."""
     ready = th.prepared(machine, SIZE_M, 48, progress, across=ACROSS)
-    return th.motor_network(machine, th.reduced(ready, COARSE).network(max_states=COARSE.max_states))
+    # fewer snapshots than a case's: enough to rank designs
+    coarse = th.Recipe(tolerance=0.03, max_states=110, shifts=(1 / 20, 1 / 700), random_points=1)
+    return th.motor_network(machine, th.reduced(ready, coarse).network(max_states=coarse.max_states))
 
 
 class Condensations:
