@@ -433,10 +433,11 @@ def guess(source: Source, column: str, target: Target) -> Guess:
     flows = is_of_flow(label) or Role.COOLANT in roles_of(label)  # what a fan, a pump or a cooler does
     if flows and not worded and whole and (is_stage(label) or AIR in quantities_of(label) or np.nanmax(values) <= 1):
         return _fed(Guess(column, "flow_share", "1", why="name", doubt=STAGES), label, target)
+    on_off = {*values[np.isfinite(values)].tolist()} == {0.0, 1.0}
     flag = why == "unit" and quantity not in SWITCHED and {*values[np.isfinite(values)]} <= {0.0, 1.0}
     still = not unit_text and np.nanmax(values) == np.nanmin(values)  # temperature_source
     if flag or (quantity == "temperature" and whole and (still or not worded)):
-        return Guess(column, "", doubt="a state, by its values" if flag or np.nanmax(values) > 1 else UNTOLD)
+        return Guess(column, "", doubt="a state, by its values" if flag or not on_off else UNTOLD)
     of_fan = quantity == "speed" and AIR in quantities_of(label) and not is_spoken(label, MACHINE)
     if of_fan and target.input_of(label, quantity) in ("", INPUTS["speed"]):
         quantity, unit, doubt = "flow_share", "%", AS_FLOW
@@ -466,6 +467,8 @@ def guess(source: Source, column: str, target: Target) -> Guess:
 def _by_partner(source: Source, column: str) -> str:
     """Its name, with voltage or current for what stands where another has the word or the letter of the other."""
     words = [word.lower() for word in WORD.findall(source.labels[column])]
+    if not PARTNERS.keys() & {*words}:
+        return source.labels[column]
     others = {tuple(map(str.lower, WORD.findall(label))) for label in source.labels.values()}
     for i, word in enumerate(words):
         partner, meaning = PARTNERS.get(word, ("", ""))
