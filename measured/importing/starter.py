@@ -178,8 +178,7 @@ def of_machine(columns: Columns) -> Columns:
         mean = float(np.nanmean(values))  # of what hardly changes and is as cold as the others were when they began
         if {*filter(str.isdigit, tokens(s.labels[g.column]))} & of_heaters:
             continue  # T2 beside Q2, its heater
-        is_part = roles_of(s.labels[g.column]) or is_spoken(s.labels[g.column], ROOMS)
-        if not is_part and mean <= coldest and np.ptp(np.nanpercentile(values, MOST)) <= most:
+        if not roles_of(s.labels[g.column]) and mean <= coldest and np.ptp(np.nanpercentile(values, MOST)) <= most:
             means.setdefault(mean, g.column)
     room = means[min(means)] if means else ""
     columns = [(s, replace(g, place="ambient") if g.column == room else g) for s, g in columns]
