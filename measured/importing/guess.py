@@ -183,6 +183,10 @@ class Guess:
         """Left out, and why."""
         return replace(self, place="", feeds="", doubt=doubt)
 
+    def also(self, doubt: str) -> Guess:
+        """With one more doubt."""
+        return replace(self, doubt="; ".join(filter(None, (self.doubt, doubt))))
+
 
 def guesses(source: Source, clock: Sequence[str], target: Target) -> list[Guess]:
     """One per column that is not a clock."""
@@ -352,11 +356,7 @@ def _read(source: Source, every: list[Guess], target: Target) -> list[Guess]:
     hot = {g.column: source.labels[g.column] for g in every if g.quantity == "temperature"}
     parts = [c for c in hot if not of_edge(roles_of(hot[c]))]
     still = {c for c in parts if np.nanmax(values := source.numbers(c)) == np.nanmin(values)}
-    dead = [
-        g.without(DEAD) if still != {*parts} else replace(g, doubt="; ".join(filter(None, (g.doubt, DEAD))))
-        for g in every
-    ]
-    every = [one if g.column in still else g for one, g in zip(dead, every, strict=True)]
+    every = [g if g.column not in still else g.also(DEAD) if still == {*parts} else g.without(DEAD) for g in every]
     models = {c for c, label in hot.items() if MODELLED & {*tokens(PATH.split(label)[-1])}}
     if len(models) < len(hot):
         every = [Guess(g.column, "", doubt="modelled, not read") if g.column in models else g for g in every]
@@ -391,9 +391,8 @@ def _read(source: Source, every: list[Guess], target: Target) -> list[Guess]:
             every[i] = replace(g, doubt=OF_TESTED)
         else:
             device = is_spoken(g.place, INSTRUMENT) and not is_spoken(g.place, MACHINE)
-            alone = len(instruments) == len({*hot} - still | instruments) or not (
-                rest or itself
-            )  # a device is what is tested
+            # a device is what is tested
+            alone = len(instruments) == len({*hot} - still | instruments) or not (rest or itself)
             stays = (alone and not g.place) or device
             every[i] = replace(g, doubt=OF_INSTRUMENT) if stays else Guess(g.column, "", doubt=OF_INSTRUMENT)
     return every
@@ -449,9 +448,9 @@ def guess(source: Source, column: str, target: Target) -> Guess:
         if quantity == "speed" and not set(tokens(match[1])) & REMARK_WORDS:  # of a vehicle, or a counter
             return Guess(column, "", doubt=f"unit '{match[1]}' {UNKNOWN}: is it a speed of the machine?")
         assumed = f"unit '{match[1]}' {UNKNOWN}: {unit} assumed"
-    base = Guess(column, quantity, unit, why=why, doubt="; ".join(filter(None, (doubt, assumed))))
+    base = Guess(column, quantity, unit, why=why, doubt=doubt).also(assumed)
     if heater and quantity == "share":
-        base = replace(base, doubt="; ".join(filter(None, (OF_HEATER, assumed))))
+        base = replace(base, doubt=OF_HEATER).also(assumed)
     if quantity == "share" and np.nanmin(values) < 0:
         return Guess(column, "", doubt=BOTH_WAYS)
     if quantity not in SWITCHED and source.is_switch(column):
@@ -583,7 +582,7 @@ def _in_fahrenheit(source: Source, every: list[Guess]) -> list[Guess]:
 def _fahrenheit(source: Source, g: Guess, beside_room: bool) -> Guess:
     """Without a unit in the header it is read so; a unit in the header is law, and doubted aloud."""
     if not beside_room:
-        return replace(g, doubt="; ".join(filter(None, (g.doubt, "or degF, by its values"))))
+        return g.also("or degF, by its values")
     if source.units[g.column]:
         return replace(g, doubt=f"{source.units[g.column]} {IN_HEADER} Fahrenheit by its values?")
     return replace(g, unit="degF", doubt="no unit: degF by its values")
@@ -745,7 +744,7 @@ def single(guesses: list[Guess], target: Target, labels: Mapping[str, str]) -> l
         if key not in owner:
             owner[key] = g.column
             if g.feeds and is_setpoint(g.column):
-                out[g.column] = replace(g, doubt="; ".join(filter(None, (g.doubt, DEMAND))))
+                out[g.column] = g.also(DEMAND)
             continue
         of_part = g.quantity == "power" and (
             roles_of(g.column) or is_spoken(g.column, ROOMS) or LOSS & {*tokens(labels[owner[key]])}

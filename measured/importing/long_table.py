@@ -100,10 +100,8 @@ def side_by_side(
                     reading if is_reading(reading) and _text(reading).lower() not in EMPTY else last
                 )
     common = {names[j]: [instant[i] for instant in instants] for i, j in enumerate(times)}
-    return {
-        **common,
-        **{s: [readings.get(t) for t in instants] for s, readings in (per_instant | series).items()},
-    }, notes
+    series = per_instant | series
+    return {**common, **{s: [readings.get(t) for t in instants] for s, readings in series.items()}}, notes
 
 
 def _in_order(instants: Iterable[tuple[Any, ...]], series: Iterable[Iterable[Any]]) -> list[tuple[Any, ...]]:
