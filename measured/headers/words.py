@@ -117,8 +117,6 @@ def roles_of(name: str) -> list[Role]:
         ]
         if at:
             hits[role] = min(at)
-    if ROOMS & {*words}:  # a bedroom is heated
-        hits.pop(Role.AMBIENT, None)
     if [*hits] == [Role.IRON] and OUTER & {*words} and WOUND & {*words}:  # Stator U1, Stator RTD 2
         return [Role.WINDING]
     if not hits and OUTSIDE.search(name):

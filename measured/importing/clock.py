@@ -267,7 +267,7 @@ def checked(clock: Clock, source: Source) -> Clock:
         t[: (at := int(np.flatnonzero(finite)[back[0] + 1]))] = np.nan
         finite = np.isfinite(t)
         doubts.append(f"{at} rows over the clock's start are left out: means, or limits")
-    elif back.size and 0 < late.size < OUT_OF_ORDER * t.size and not (np.diff(late) == 1).any():
+    elif clock.start is not None and 0 < late.size < OUT_OF_ORDER * t.size and not (np.diff(late) == 1).any():
         t[np.flatnonzero(finite)[late]] = np.nan
         finite = np.isfinite(t)
         doubts.append(f"{late.size} rows whose clock runs back for one row are left out")
