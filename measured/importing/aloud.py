@@ -146,7 +146,8 @@ def _heat(draft: Draft, columns: Columns, left: Columns) -> dict[str, str]:
     if draft.constants:
         return {}
     if not heats:
-        candidates = [g.column for r, g in left if {*quantities_of(r.source.labels[g.column])} & {*HEATS}]
+        numeric = [(quantities_of(r.source.labels[c]), c) for r, g in left if r.source.is_numeric(c := g.column)]
+        candidates = [column for quantities, column in numeric if {*quantities} & {*HEATS}]
         if candidates := candidates or ([best] if best and error < EXPLAINS else []):
             to = quote(f"{candidates[0]}=QUANTITY")
             return {"heat": f"the only heat was left out: '{candidates[0]}'; --place {to}"}

@@ -29,7 +29,15 @@ from measured.importing.clock import Clock, clock_of, in_time_order, on_one_cloc
 from measured.importing.draft import Draft, sample_of
 from measured.importing.guess import Guess
 from measured.importing.relations import is_equal
-from measured.importing.source import Source, explained, over_room, read_source, read_sources, source_of_recording
+from measured.importing.source import (
+    Source,
+    explained,
+    over_room,
+    read_source,
+    read_sources,
+    source_of_recording,
+    with_ends,
+)
 from measured.input_folders import within_inputs
 from measured.recordings.data_table import DataTable, csv_text
 from measured.recordings.grid import LONGEST_S
@@ -172,7 +180,7 @@ def read_runs(
     for legend in legends:
         sources = explained(sources, legend)
     tests = [test for source in sources for test in tests_of(source)]
-    runs = [run for test in tests for run in runs_of(with_loss(over_room(test)), period_s)]
+    runs = [run for test in tests for run in runs_of(with_loss(with_ends(over_room(test))), period_s)]
     return [with_clock(run, period_s) for run in runs]
 
 

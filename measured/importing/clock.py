@@ -56,6 +56,7 @@ ZONELESS = "without a zone"
 SHARE = 0.9  # of the cells of a column that is a clock
 SAMPLE = 200  # cells that tell what a column is
 LEAST = 3  # rows with a time
+OUT_OF_ORDER = 0.05  # of the rows, each between two that are not: slips of a clock chip
 FEWEST = 20  # rows of a run that is a test
 MACHINES = 24  # in one file
 EVEN = 1.5  # the longest step over the usual one of a record without gaps
@@ -252,6 +253,7 @@ def checked(clock: Clock, source: Source) -> Clock:
     t, doubts = t.copy(), [clock.doubt] if clock.doubt else []
     step = np.diff(t[finite])
     usual = float(np.median(np.abs(step)))
+    late = np.flatnonzero(t[finite] < np.maximum.accumulate(t[finite]))
     back, hour = np.flatnonzero(step < 0), np.flatnonzero(np.abs(step - HOUR_S - usual) < usual)
     if (
         clock.start is not None
@@ -265,6 +267,10 @@ def checked(clock: Clock, source: Source) -> Clock:
         t[: (at := int(np.flatnonzero(finite)[back[0] + 1]))] = np.nan
         finite = np.isfinite(t)
         doubts.append(f"{at} rows over the clock's start are left out: means, or limits")
+    elif clock.start is not None and 0 < late.size < OUT_OF_ORDER * t.size and not (np.diff(late) == 1).any():
+        t[np.flatnonzero(finite)[late]] = np.nan
+        finite = np.isfinite(t)
+        doubts.append(f"{late.size} rows whose clock runs back for one row are left out")
     elif back.size:
         what = f"the clock runs back by {-step[back[0]]:g} s in row {int(back[0]) + 2} of the readings"
         raise InputError(what, where, "rows in the order of time")
@@ -398,7 +404,7 @@ def _has_time(cells: Sequence[Any]) -> bool:
 def _digits(cell: Any) -> str:
     """Its digits, of an instant without signs but a T or a blank."""
     text = f"{cell:.0f}" if isinstance(cell, float) and np.isfinite(cell) else str(cell).strip()
-    return text[:8] + text[9:] if text[8:9] in ("T", " ", "_") else text
+    return text[:8] + text[9:] if text[8:9] in tuple("T _:") else text
 
 
 def _day(cell: Any) -> str:
@@ -538,14 +544,18 @@ def _of_day(source: Source, column: str) -> Clock:
     hours = two and not minutes_in_label and (hours_in_label or of_day)
     seconds = np.array([_total(p, two and not hours) for p in parsed])
     finite = np.flatnonzero(np.isfinite(seconds))
-    turns = np.zeros(seconds.size)
-    turns[finite[1:]] = np.cumsum(np.diff(seconds[finite]) < -DAY_S / 2)
+    turns, step = np.zeros(seconds.size), np.diff(seconds[finite])
+    early = HOUR_S + step[step < 0] - (usual := float(np.median(np.abs(step))) if step.size else 0.0)
+    no_hours = two and not hours and early.size and bool((np.abs(early) <= usual / 2).all())
+    turn = HOUR_S if no_hours else DAY_S
+    turns[finite[1:]] = np.cumsum(step < -turn / 2)
     words = "minutes:seconds" if two and not hours else "hours:minutes" if two else "hours:minutes:seconds"
+    words += ", on from hour to hour" * no_hours
     unsure = two and not (hours_in_label or minutes_in_label or fraction or any(p[0] > 23 for p in read))
     doubt = (
         f"taken as {words}; the other of hours:minutes and minutes:seconds: write the unit (mm:ss)" if unsure else ""
     )
-    return Clock(seconds + DAY_S * turns, None, (column,), words, doubt)
+    return Clock(seconds + turn * turns, None, (column,), words, doubt)
 
 
 def _parts(cell: Any) -> list[float]:

@@ -34,11 +34,13 @@ from measured.headers.words import (
     RATIO,
     READ,
     ROLES,
+    ROOMS,
     SETPOINT,
     SPARE,
     SPOT,
     SPREAD,
     SUPPLY,
+    WORD,
     axis_of,
     is_rise,
     is_setpoint,
@@ -52,7 +54,15 @@ from measured.headers.words import (
     tokens,
 )
 from measured.importing.clock import is_second_clock
-from measured.importing.relations import SAME, START_K, functional_relations, is_like_temperature, is_product, quickness
+from measured.importing.relations import (
+    SAME,
+    START_K,
+    functional_relations,
+    is_like_temperature,
+    is_product,
+    is_smooth,
+    quickness,
+)
 from measured.importing.source import Source
 from measured.importing.target import Target, measure_of
 from measured.recordings.invalid_readings import FAR, LARGEST_THERMOCOUPLE, coded
@@ -69,7 +79,7 @@ LEAST = 3  # readings of a column
 ROOM_C = (-50.0, 120.0)  # degC at which machines are started, in the cold and in an oven
 ANGLE = re.compile(r"(?i)theta(?:[_ ]?[a-z]{0,2}|[_ ]?(?:mech|elec|el|rot))$")  # of a rotor, rather than a temperature
 OMEGA = re.compile(r"(?<=\.)w$|^w(?=$|_(?:m|r|mot|rotor|shaft|el)$)")  # beside a torque
-VOLTS = re.compile(r"(?<=\.)v$")  # dc.v beside dc.i
+PARTNERS = {"v": ("i", "voltage"), "i": ("v", "current"), "current": ("voltage", "current")}  # dc.v beside dc.i
 HEATER = re.compile(r"[QH](\d)")  # beside T of the same number
 LOAD = re.compile(r"T_?(?:load|last|mech|em|brake|shaft)")  # of a torque, where its readings are no temperature's
 AXES = ({"id", "iq"}, {"ialpha", "ibeta"})  # components whose squares add up to the current's
@@ -123,7 +133,7 @@ FASTEST, OF_STATOR = (f"{why}: {AS_WINDING}" for why in ("follows the heat faste
 AS_TORQUE = "starts where no temperature does, beside a speed: taken as a torque in N*m"
 AS_ROOM = "taken as the room, as no other column is: is the machine in there?"
 FLUID_ALONE = "of a coolant by its name; taken as a part, as no other column is"
-INDOORS = "a room beside the air outside: taken as a part"
+INDOORS = "a room of a house: taken as a part"
 AS_FLOW = "the speed of a fan: taken as a flow, of which only the changes count"
 ON_OFF = "on and off, by its values alone: heat, cooling, or neither?"
 OF_READINGS = "made of readings that stand nowhere, by its name"
@@ -172,6 +182,10 @@ class Guess:
     def without(self, doubt: str) -> Guess:
         """Left out, and why."""
         return replace(self, place="", feeds="", doubt=doubt)
+
+    def also(self, doubt: str) -> Guess:
+        """With one more doubt."""
+        return replace(self, doubt="; ".join(filter(None, (self.doubt, doubt))))
 
 
 def guesses(source: Source, clock: Sequence[str], target: Target) -> list[Guess]:
@@ -342,8 +356,7 @@ def _read(source: Source, every: list[Guess], target: Target) -> list[Guess]:
     hot = {g.column: source.labels[g.column] for g in every if g.quantity == "temperature"}
     parts = [c for c in hot if not of_edge(roles_of(hot[c]))]
     still = {c for c in parts if np.nanmax(values := source.numbers(c)) == np.nanmin(values)}
-    if still != {*parts}:
-        every = [g.without(DEAD) if g.column in still else g for g in every]
+    every = [g if g.column not in still else g.also(DEAD) if still == {*parts} else g.without(DEAD) for g in every]
     models = {c for c, label in hot.items() if MODELLED & {*tokens(PATH.split(label)[-1])}}
     if len(models) < len(hot):
         every = [Guess(g.column, "", doubt="modelled, not read") if g.column in models else g for g in every]
@@ -378,7 +391,8 @@ def _read(source: Source, every: list[Guess], target: Target) -> list[Guess]:
             every[i] = replace(g, doubt=OF_TESTED)
         else:
             device = is_spoken(g.place, INSTRUMENT) and not is_spoken(g.place, MACHINE)
-            alone = len(instruments) == len(hot) or not (rest or itself)  # a device is what is tested
+            # a device is what is tested
+            alone = len(instruments) == len({*hot} - still | instruments) or not (rest or itself)
             stays = (alone and not g.place) or device
             every[i] = replace(g, doubt=OF_INSTRUMENT) if stays else Guess(g.column, "", doubt=OF_INSTRUMENT)
     return every
@@ -398,7 +412,7 @@ def guess(source: Source, column: str, target: Target) -> Guess:
     """A column by itself."""
     if odd := _left_out(source, column):
         return Guess(column, "", doubt=odd)
-    label, unit_text = VOLTS.sub("voltage", source.labels[column]), source.units[column]
+    label, unit_text = _by_partner(source, column), source.units[column]
     if OMEGA.search(label) and any("torque" in quantities_of(other) for other in source.labels.values()):
         label = OMEGA.sub("omega", label)
     heater = HEATER.fullmatch(label) if not unit_text else None
@@ -407,7 +421,7 @@ def guess(source: Source, column: str, target: Target) -> Guess:
     if not (unit_text or quantities_of(label)) and "load" in tokens(label):
         label = f"{label} share"
     unit = unit_of(unit_text) or _called_unit(label)
-    quantity, why, doubt = _by_values(source, column) if source.unnamed else _quantity(label, unit, target)
+    quantity, why, doubt = _by_values(source, column) if source.unnamed and not unit else _quantity(label, unit, target)
     if not quantity:
         return Guess(column, "", doubt="a clock? say so: time [s]" if _counts_on(source, column) else UNTOLD)
     values = source.numbers(column)
@@ -418,10 +432,11 @@ def guess(source: Source, column: str, target: Target) -> Guess:
     flows = is_of_flow(label) or Role.COOLANT in roles_of(label)  # what a fan, a pump or a cooler does
     if flows and not worded and whole and (is_stage(label) or AIR in quantities_of(label) or np.nanmax(values) <= 1):
         return _fed(Guess(column, "flow_share", "1", why="name", doubt=STAGES), label, target)
+    on_off = {*values[np.isfinite(values)].tolist()} == {0.0, 1.0}
     flag = why == "unit" and quantity not in SWITCHED and {*values[np.isfinite(values)]} <= {0.0, 1.0}
     still = not unit_text and np.nanmax(values) == np.nanmin(values)  # temperature_source
     if flag or (quantity == "temperature" and whole and (still or not worded)):
-        return Guess(column, "", doubt="a state, by its values")
+        return Guess(column, "", doubt="a state, by its values" if flag or not on_off else UNTOLD)
     of_fan = quantity == "speed" and AIR in quantities_of(label) and not is_spoken(label, MACHINE)
     if of_fan and target.input_of(label, quantity) in ("", INPUTS["speed"]):
         quantity, unit, doubt = "flow_share", "%", AS_FLOW
@@ -433,9 +448,9 @@ def guess(source: Source, column: str, target: Target) -> Guess:
         if quantity == "speed" and not set(tokens(match[1])) & REMARK_WORDS:  # of a vehicle, or a counter
             return Guess(column, "", doubt=f"unit '{match[1]}' {UNKNOWN}: is it a speed of the machine?")
         assumed = f"unit '{match[1]}' {UNKNOWN}: {unit} assumed"
-    base = Guess(column, quantity, unit, why=why, doubt="; ".join(filter(None, (doubt, assumed))))
+    base = Guess(column, quantity, unit, why=why, doubt=doubt).also(assumed)
     if heater and quantity == "share":
-        base = replace(base, doubt="; ".join(filter(None, (OF_HEATER, assumed))))
+        base = replace(base, doubt=OF_HEATER).also(assumed)
     if quantity == "share" and np.nanmin(values) < 0:
         return Guess(column, "", doubt=BOTH_WAYS)
     if quantity not in SWITCHED and source.is_switch(column):
@@ -446,6 +461,21 @@ def guess(source: Source, column: str, target: Target) -> Guess:
     if out := _impossible(source, base):
         return Guess(column, "", doubt=out)
     return _placed(base, label, target) if quantity == "temperature" else _fed(base, label, target)
+
+
+def _by_partner(source: Source, column: str) -> str:
+    """Its name, with voltage or current for what stands where another has the word or the letter of the other."""
+    words = [word.lower() for word in WORD.findall(source.labels[column])]
+    if not PARTNERS.keys() & {*words}:
+        return source.labels[column]
+    others = {tuple(map(str.lower, WORD.findall(label))) for label in source.labels.values()}
+    for i, word in enumerate(words):
+        partner, meaning = PARTNERS.get(word, ("", ""))
+        rest = [*words[:i], *words[i + 1 :]]
+        phases = any((*words[:i], phase, *words[i + 1 :]) in others for phase in "uw")
+        if (*words[:i], partner, *words[i + 1 :]) in others and not (phases or quantities_of(" ".join(rest))):
+            return " ".join([*rest, meaning])
+    return source.labels[column]
 
 
 def _cold_start_outliers(source: Source, every: list[Guess], target: Target) -> list[Guess]:
@@ -552,7 +582,7 @@ def _in_fahrenheit(source: Source, every: list[Guess]) -> list[Guess]:
 def _fahrenheit(source: Source, g: Guess, beside_room: bool) -> Guess:
     """Without a unit in the header it is read so; a unit in the header is law, and doubted aloud."""
     if not beside_room:
-        return replace(g, doubt="; ".join(filter(None, (g.doubt, "or degF, by its values"))))
+        return g.also("or degF, by its values")
     if source.units[g.column]:
         return replace(g, doubt=f"{source.units[g.column]} {IN_HEADER} Fahrenheit by its values?")
     return replace(g, unit="degF", doubt="no unit: degF by its values")
@@ -618,12 +648,11 @@ def _by_values(source: Source, column: str) -> tuple[str, str, str]:
     """Smooth readings of a file without names that can hardly be anything but temperatures."""
     values = source.finite(column)
     low, high = float(np.min(values)), float(np.max(values))
-    smooth = np.max(np.abs(np.diff(values))) < 0.2 * max(high - low, 1e-9) + 1.0
     absolute = KELVIN[0] < float(np.median(values)) < KELVIN[1]
     different = np.unique(values).size  # states are few, and whole numbers
     many = different > 0.1 * values.size or (different > LEAST and bool((values % 1 != 0).any()))
     celsius = UNNAMED[0] < low and high < UNNAMED[1] and many
-    if not (smooth and (absolute or celsius)):
+    if not (is_smooth(values) and (absolute or celsius)):
         return "", "", ""
     return "temperature", "values", f"no name: {BY_READINGS}"
 
@@ -715,9 +744,11 @@ def single(guesses: list[Guess], target: Target, labels: Mapping[str, str]) -> l
         if key not in owner:
             owner[key] = g.column
             if g.feeds and is_setpoint(g.column):
-                out[g.column] = replace(g, doubt="; ".join(filter(None, (g.doubt, DEMAND))))
+                out[g.column] = g.also(DEMAND)
             continue
-        of_part = g.quantity == "power" and (roles_of(g.column) or LOSS & {*tokens(labels[owner[key]])})
+        of_part = g.quantity == "power" and (
+            roles_of(g.column) or is_spoken(g.column, ROOMS) or LOSS & {*tokens(labels[owner[key]])}
+        )
         if g.feeds and (g.feeds not in target.inputs or of_part) and not is_setpoint(g.column):  # of copper or iron
             stem, _, unit = input_name(g).rpartition("_")
             names = (f"{stem}{end}_{unit}" for end in ("", *(f"_{i}" for i in range(2, len(guesses) + 2))))

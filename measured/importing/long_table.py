@@ -51,13 +51,17 @@ def side_by_side(
     rest = [j for j in range(len(names)) if j != key and j not in times]
     values = [j for j in rest if set(tokens(names[j])) & VALUES]
     numeric = [j for j in rest if any(map(is_reading, columns[j]))]
+    clocks = list(zip(*(columns[j] for j in times), strict=True))
+    tells = not values and any(map(quantities_of, {*map(_text, columns[key])}))  # a temperature, or a power
+    of_instant = [j for j in numeric if tells and len({*zip(clocks, columns[j])}) == len({*clocks})]
+    numeric = [j for j in numeric if j not in of_instant] if len(numeric) > 1 else numeric
     if not times or not (values or len(numeric) == 1):
         return {}, []
     value = [*values, *numeric][0]
     text = split_unit(names[value])[1]
     unit = text and f" [{text}]" if values else f" {names[value]}" if text or quantities_of(names[value]) else ""
     series: dict[str, dict[Any, Any]] = {}
-    clocks = list(zip(*(columns[j] for j in times), strict=True))
+    per_instant = {names[j]: dict(zip(clocks, columns[j])) for j in of_instant if j != value}
     signals = columns[key]
     once = {
         signal for signal, count in Counter(signals).items() if count == 1 and len(signals) > RARE * len({*signals})
@@ -96,6 +100,7 @@ def side_by_side(
                     reading if is_reading(reading) and _text(reading).lower() not in EMPTY else last
                 )
     common = {names[j]: [instant[i] for instant in instants] for i, j in enumerate(times)}
+    series = per_instant | series
     return {**common, **{s: [readings.get(t) for t in instants] for s, readings in series.items()}}, notes
 
 

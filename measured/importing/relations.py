@@ -186,6 +186,11 @@ def names_of(columns: Sequence[str], most: int = NAMES) -> str:
     return ", ".join(f"'{c}'" for c in columns[:most]) + more
 
 
+def is_smooth(values: Array) -> bool:
+    """Are most steps from row to row small beside its span?  A probe may be moved, and a record have a gap."""
+    return float(np.percentile(np.abs(np.diff(values)), USUAL)) < STEP * float(np.ptp(values)) + 1.0
+
+
 def is_like_temperature(values: Array, starts: Sequence[float], band_K: float = START_K) -> bool:
     """Does it start where temperatures of the same recording start, in many small steps?
 
@@ -195,10 +200,8 @@ def is_like_temperature(values: Array, starts: Sequence[float], band_K: float = 
     if values.size < COARSE or np.unique(values).size < COARSE or not (values % 1).any():
         return False
     low, high = (min(starts), max(starts)) if starts else (10.0, 35.0)
-    step = float(np.percentile(np.abs(np.diff(values)), USUAL))  # but for a few jumps, as of a probe that is moved
-    smooth = step < STEP * float(np.ptp(values)) + 1.0
     inside = LIMITS[0] < float(values.min()) and float(values.max()) < LIMITS[1]
-    return smooth and inside and low - band_K < float(np.median(values[:5])) < high + band_K
+    return is_smooth(values) and inside and low - band_K < float(np.median(values[:5])) < high + band_K
 
 
 def misfit(seconds: Array, rise: Array, heat: Array, exponent: float) -> float:

@@ -18,9 +18,9 @@ from geom.arrays import Array
 from geom.description.names import plain_header
 from geom.description.roles import Role
 from geom.errors import InputError
-from measured.headers.cells import EMPTY, SWITCH, WITH_UNIT, is_date, is_unit, number, split_unit, unit_of
+from measured.headers.cells import EMPTY, SWITCH, WITH_UNIT, is_clock, is_date, is_unit, number, split_unit, unit_of
 from measured.headers.rows import NO_RECORD, UNIT_NAMES, Layout, called, layout, transposed, trimmed
-from measured.headers.words import RUNS, is_rise, is_time, quantities_of, roles_of, tokens, without_rise
+from measured.headers.words import QUANTITY, RUNS, is_rise, is_time, quantities_of, roles_of, tokens, without_rise
 from measured.importing.long_table import side_by_side
 from measured.importing.text import DELIMITERS, decoded, split_cells, text_table
 from measured.recordings.csv_file import CHUNK
@@ -48,6 +48,8 @@ HALVES = re.compile(  # of a day, before the hour or behind the time
 YEAR = re.compile(r"^\s*['’](?=\d\d[-/.]\d\d[-/.]\d\d\b)")
 POINTED = re.compile(r"(?:[01]?\d|2[0-3])\.[0-5]\d\.[0-5]\d")
 TAG = re.compile(r"\s*<[^<>]*>|\\[^\\]*:\d+$")  # of a channel, no part of its name: 101 Winding <TC K>, tStator\ETKC:1
+VALUED = re.compile(r"([-+]?\d+(?:[.,]\d+)?)\s*([^\d\s.,:;+/|()-][^\d\s/|()]*)")
+SEVERAL = re.compile(rf"(?:{VALUED.pattern}(?:[\s/|(),;]+|$)){{2,}}")
 UNCALCULATED = re.compile(rb"</f>\s*(?:<v\s*/>|<v></v>)?\s*</c>")
 
 
@@ -179,6 +181,20 @@ def over_room(source: Source) -> Source:
     return replace(source, cells=cells, labels=labels, units=texts, notes=(*source.notes, note), values={})
 
 
+def with_ends(source: Source) -> Source:
+    """With what came in and went out as the ends of the coolant, and a note, where its flow was recorded."""
+    words = {c: {*tokens(label)} for c, label in source.labels.items()}
+    ends = {c: w - QUANTITY["temperature"] for c, w in words.items() if w & QUANTITY["temperature"]}
+    ends = {c: end for c, end in ends.items() if end in ({"in"}, {"out"})}
+    flows = any("water_flow" in quantities_of(label) for label in source.labels.values())
+    has_coolant = any(Role.COOLANT in roles_of(label) for label in source.labels.values())
+    if len(ends) != 2 or not flows or has_coolant or not set.isdisjoint(*ends.values()):
+        return source
+    note = f"{source.file.name}: {' and '.join(map(repr, ends))} are taken as those of the flow beside them"
+    labels = {**source.labels} | {c: f"coolant {''.join(end)}" for c, end in ends.items()}
+    return replace(source, labels=labels, notes=(*source.notes, note))
+
+
 def _of_sheets(file: Path) -> list[Source]:
     sheets = guarded(file, BOOK, "openpyxl", lambda: worksheets(file))
     for name, rows in sheets.items():
@@ -282,7 +298,8 @@ def _source(
     notes: Sequence[str],
     start: float | None = None,
 ) -> Source:
-    pairs = [(name, _with_colons(cells)) for name, cells in zip(names, columns, strict=True)]
+    every = [pair for one in zip(names, columns, strict=True) for pair in _with_several(*one).items()]
+    pairs = [(name, _with_colons(cells)) for name, cells in every]
     cells: dict[str, Any] = {n: c for n, c in pairs if _any(c) or not UNNAMED.fullmatch(n)}
     if sum(map(_any, cells.values())) < 2:
         raise InputError("the file has one column only", str(file), "a time or an input, and at least one temperature")
@@ -352,6 +369,20 @@ def _with_colons(cells: Sequence[Any]) -> Sequence[Any]:
     parts = [str(c).strip().split(".") for c in cells]
     of_day = len({second for *_, second in parts}) > 2 or any(middle > "31" for _, middle, _ in parts)
     return [":".join(one) for one in parts] if of_day else cells
+
+
+def _with_several(name: str, cells: Sequence[Any]) -> dict[str, Sequence[Any]]:
+    """A column for each of the readings that stand with their units in one cell: 23.5 C (74.3 F), 12.1 V / 3 A."""
+    first = (
+        "" if isinstance(cells, np.ndarray) else next((c for c in cells if isinstance(c, str) and not _empty(c)), "")
+    )
+    units = [unit for _, unit in VALUED.findall(first)]
+    if not SEVERAL.fullmatch(first) or is_clock(first) or not all(map(is_unit, units)):
+        return {name: cells}
+    rows = [VALUED.findall(c) if isinstance(c, str) else [] for c in cells]
+    good = [[value for value, _ in row] if [unit for _, unit in row] == units else [None] * len(units) for row in rows]
+    names = _once([f"{name} [{unit}]" for unit in units])
+    return dict(zip(names, map(list, zip(*good, strict=True)), strict=True))
 
 
 def _phase(header: str, label: str, letter: str, stems: Mapping[str, int]) -> bool:

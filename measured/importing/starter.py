@@ -155,7 +155,10 @@ def of_machine(columns: Columns) -> Columns:
         columns = [(s, Guess(g.column, "", doubt=g.doubt) if g.doubt == OF_INSTRUMENT else g) for s, g in columns]
     rooms = {s.labels[g.column] for s, g, place in every if place == "ambient" and not g.place}
     inside = {label for label in rooms if not is_within(label, OUTER)}
-    if inside < rooms and not any(roles_of(label := s.labels[g.column]) or is_whole(label) for s, g in parts):
+    several = sum(is_spoken(s.labels[g.column], ROOMS) for s, g, place in every if place) > 1
+    if (inside < rooms or several) and not any(
+        roles_of(label := s.labels[g.column]) or is_whole(label) for s, g in parts
+    ):
         columns = _as_parts(columns, inside)
     if not rooms and any(is_spoken(s.labels[g.column], ROOMS) for s, g in parts):
         out = {g.column for s, g in parts if {*tokens(s.labels[g.column])} - QUANTITY["temperature"] == {"out"}}

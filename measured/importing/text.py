@@ -54,10 +54,10 @@ ARROW = re.compile(
     r"|(\d{1,4}[-/.]\d{1,2}[-/.]\d{1,4} \d{1,2}:\d\d(?::\d\d)?)\s+(?=[-+]?\d\S*(?:[;|\t]|,\s)))",
     re.MULTILINE,
 )
-# A date and a time with another sign than a blank between, after a program's level and name, or before " - ".
-_DAY, _TIME = r"\d{1,4}[-/.]\d{1,2}[-/.]\d{1,4}", r"\d{1,2}:\d\d:[\d.]+"
+# A date and a time with another sign than a blank between, after a program's level and name, or before " - " or "--".
+_DAY, _TIME, _DASH = r"\d{1,4}[-/.]\d{1,2}[-/.]\d{1,4}", r"\d{1,2}:\d\d:[\d.]+", "(?: - |--)"
 STAMP = re.compile(
-    rf"^(?:[A-Z]+:\w*:|(?={_DAY}[-@])|(?={_DAY} {_TIME} - ))({_DAY})[-@ ](\d{{1,2}}:\d\d:)(\d+)([.\d]*)( - )?",
+    rf"^(?:[A-Z]+:\w*:|(?={_DAY}[-@])|(?={_DAY} {_TIME}{_DASH}))({_DAY})[-@ ](\d{{1,2}}:\d\d:)(\d+)([.\d]*)({_DASH})?",
     re.MULTILINE,
 )
 FORTRAN = re.compile(r"(?<=[.\d]\d)[Dd](?=[-+]\d\d\b)")  # 2.4D+01

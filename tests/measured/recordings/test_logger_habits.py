@@ -18,6 +18,7 @@ from measured.importing.clock import clock_of
 from measured.importing.guess import (
     AS_FLOW,
     AS_ROOM,
+    DEAD,
     ELSE,
     OF_READINGS,
     OF_SUPPLY,
@@ -633,3 +634,107 @@ def test_a_flow_of_mass_or_of_air(tmp_path, header, quantity, first, doubted):
     assert guess.quantity == quantity
     assert in_memory(source, guess)[0] == pytest.approx(first, rel=1e-9)
     assert bool(guess.doubt) == doubted
+
+
+@pytest.mark.parametrize("cell", ["{0:.1f}°C ({1:.1f}°F)", "{0:.1f} C / {1:.1f} F", "{0:.1f}C {1:.1f}F"])
+def test_two_units_in_a_cell_are_two_columns_of_one_reading(tmp_path, cell):
+    both = [cell.format(w, 1.8 * w + 32) for w in WARM["W"]]
+    found, runs = read(file(tmp_path, "t [s],Temperature,I [A]", "t", both, "I"))
+    celsius, fahrenheit, _ = (g for g, _ in found.values())
+    assert (celsius.unit, fahrenheit.unit, fahrenheit.used) == ("degC", "degF", False)
+    assert in_memory(runs[0][0], celsius) == pytest.approx(WARM["W"], abs=0.06)
+
+
+def test_a_temperature_and_a_current_in_one_cell(tmp_path):
+    both = [f"{w:.1f} C {i:.2f} A" for w, i in zip(WARM["W"], WARM["I"], strict=True)]
+    found, _ = read(file(tmp_path, "t [s],winding", "t", both))
+    assert [(g.quantity, g.used) for g, _ in found.values()] == [("temperature", True), ("current", True)]
+
+
+@pytest.mark.parametrize("names", ["batt_v,batt_i", "V,I", "Voltage_load,Current_load", "pack.v,pack.i"])
+def test_a_voltage_is_told_by_the_current_beside_it(tmp_path, names):
+    volts = 3.7 + 0.01 * WARM["I"]
+    found, _ = read(file(tmp_path, f"t [s],{names},T_cell [°C]", "t", volts, "I", "W"))
+    assert [g.feeds for g, _ in found.values() if g.feeds] == ["voltage_V", "current_A"]
+    assert sum(bool(g.place) for g, _ in found.values()) == 1
+
+
+def test_phases_are_no_voltage_and_current(tmp_path):
+    """The temperatures of three phases beside a current."""
+    found, _ = read(file(tmp_path, "t [s],T_u,T_v,T_w,T_i", "t", "W", WARM["W"] + 0.31, WARM["W"] - 0.17, "A"))
+    assert not any(g.quantity == "voltage" for g, _ in found.values())
+
+
+@pytest.mark.parametrize(("flow", "place"), [("flow", "coolant"), ("draught", "")])
+def test_what_comes_in_beside_a_flow_is_the_coolant(tmp_path, flow, place):
+    flows = 1.2 + 0.001 * np.sin(WARM["t"])
+    header = f"t [s],winding [°C],T_in [°C],T_out [°C],{flow},I [A]"
+    found, runs = read(file(tmp_path, header, "t", "W", "A", 0.7 * WARM["A"] + 0.3 * WARM["W"], flows, "I"))
+    assert (found["T_in [°C]"][0].place == "coolant") == bool(place)
+    assert ("those of the flow" in " ".join(runs[0][0].notes)) == bool(place)
+
+
+def test_minutes_and_seconds_go_on_from_hour_to_hour(tmp_path):
+    """As spreadsheets cut instants: no test begins anew at each full hour."""
+    stamps = [f"{10 * k % 60:02d}:42.0" for k in range(N)]
+    ((_, clock),) = read_runs(file(tmp_path, "Time,T [°C],I [A]", stamps, "W", "I"))
+    assert clock.end_s == 600 * (N - 1)
+
+
+def test_a_clock_that_slips_for_one_row_costs_that_row(tmp_path):
+    seconds = [*range(0, 60 * N, 60)]
+    slips = [max(s - 180, 0) if k == N // 2 else s for k, s in enumerate(seconds)]
+    stamps = [f"2025-03-01 {s // 3600:02d}:{s // 60 % 60:02d}:{s % 60:02d}" for s in slips]
+    ((_, clock),) = read_runs(file(tmp_path, "Time,T [°C],I [A]", stamps, "W", "I"))
+    assert np.isnan(clock.seconds).sum() == 1
+    assert "1 rows whose clock runs back" in clock.doubt
+    back = [s - 1800 * (k >= N // 2) for k, s in enumerate(seconds)]
+    stamps = [f"2025-03-01 {s // 3600:02d}:{s // 60 % 60:02d}:{s % 60:02d}" for s in back]
+    with pytest.raises(InputError, match="runs back"):
+        read_runs(file(tmp_path, "Time,T [°C],I [A]", stamps, "W", "I"))
+
+
+def test_two_dashes_before_a_reading_with_its_name(tmp_path):
+    lines = [f"06/05/2021 23:{k // 60:02d}:{k % 60:02d}--Coil T1 : {20 + k / 7:.3f} C" for k in range(N)]
+    (tmp_path / "a.txt").write_text("\n".join(lines) + "\n")
+    ((source, clock),) = read_runs(tmp_path / "a.txt")
+    assert (clock.end_s, source.units["Coil T1"]) == (N - 1, "degC")
+
+
+def test_a_reading_of_all_rows_of_an_instant_in_a_table_without_names(tmp_path):
+    """Temperatures and powers of rooms take turns; the air outside stands behind each of them."""
+    rows = [
+        f"2025-07-28T{k // 4:02d}:{15 * (k % 4):02d},{name},{value:.2f},{5 + 0.1 * k:.1f}"
+        for k, (w, i) in enumerate(zip(WARM["W"][:40], WARM["I"][:40], strict=True))
+        for name, value in (
+            ("temp_kitchen", w),
+            ("power_kitchen", i),
+            ("temp_bedroom", w + 1),
+            ("power_bedroom", 2 * i),
+        )
+    ]
+    (tmp_path / "a.csv").write_text("\n".join(rows) + "\n")
+    found, runs = read(tmp_path / "a.csv")
+    assert runs[0][0].rows == 40
+    assert found["temp_bedroom"][0].place not in ("", "ambient")
+    assert [g.quantity for g, _ in found.values()].count("power") == 2
+    assert runs[0][0].numbers("column 4") == pytest.approx(5 + 0.1 * np.arange(40))
+
+
+def test_a_constant_that_is_all_there_is_says_so(tmp_path):
+    found, _ = read(file(tmp_path, "t [s],T_1 [°C],T_2 [°C],I [A]", "t", ["21.5"] * N, ["14.25"] * N, "I"))
+    assert all(DEAD in g.doubt for g, _ in found.values() if g.quantity == "temperature")
+
+
+def test_percents_without_a_name_are_no_temperatures(tmp_path):
+    (tmp_path / "a.csv").write_text("".join(f"{29 + k // 9}%,{885 + k}000,{1598098561 + 60 * k}\n" for k in range(N)))
+    with pytest.raises(InputError, match="no column is a temperature"):
+        read(tmp_path / "a.csv")
+
+
+def test_boiler_and_return_are_temperatures_by_their_names(tmp_path):
+    burner = ["1" if i > 0 else "0" for i in WARM["I"]]
+    found, _ = read(
+        file(tmp_path, "t [s],boiler,return,burner,room [°C]", "t", WARM["W"] + 30, WARM["W"] + 20, burner, "A")
+    )
+    assert [g.quantity for g, _ in found.values()][:3] == ["temperature", "temperature", "share"]
