@@ -87,8 +87,8 @@ def _times(a: str, b: str) -> str:
 
 def _defining(words: Sequence[str]) -> tuple[str, ...]:
     """All products of the generators' words."""
-    some = (chosen for n in range(1, len(words) + 1) for chosen in combinations(words, n))
-    return tuple(reduce(_times, chosen) for chosen in some)
+    subsets = (subset for n in range(1, len(words) + 1) for subset in combinations(words, n))
+    return tuple(reduce(_times, subset) for subset in subsets)
 
 
 @dataclass(frozen=True)
