@@ -20,6 +20,7 @@ from hidden.kinds import KINDS
 from hidden.truth.archetype import Archetype, heated, measured
 from hidden.truth.change import NOTHING
 from hidden.user import case_of
+from scipy import stats
 
 from lumped.model.network import Row
 from measured.case import Case
@@ -30,7 +31,6 @@ from validation.bands import Place, bands, parameter_posterior
 FIRST_SEED = {"dev": 900_000, "test": 950_000}  # none of the other benchmarks' machines
 SILENT = 3  # one thermometer in so many is left out
 REPORTED = ("jacket", "brushed", "incubator", "disc")
-T_95 = {2: 12.71, 3: 4.30, 4: 3.18, 5: 2.78, 6: 2.57, 7: 2.45, 8: 2.36}  # Student's t, by the number of machines
 
 
 @dataclass(frozen=True)
@@ -102,7 +102,7 @@ def rows(held: list[Held]) -> list[dict]:
                 for one in dict.fromkeys((h.kind, h.seed) for h in some)
             ]
             mean = float(np.mean([h.inside for h in some]))
-            half = float(np.std(each, ddof=1) / len(each) ** 0.5 * T_95.get(len(each), 2.0)) if len(each) > 1 else 0.0
+            half = float(stats.sem(each) * stats.t.ppf(0.975, len(each) - 1)) if len(each) > 1 else 0.0
             out.append(
                 {
                     "case": kind,

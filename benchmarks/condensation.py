@@ -88,7 +88,8 @@ def unbalanced(pair: Pair, point: Point, z: np.ndarray) -> float:
     left = {part: np.zeros(z.shape[1]) for part in pair.reduction.field.blocks}
     for zone, watts in zip(zones.values(), pair.watts, strict=True):
         left[zone.part] += watts
-    out = {"fluids": pair.heat.sum(0) - point.flow * (pair.streams @ z[_columns(pair)]).sum(0)}
+    columns = [network.column(name) for name in pair.fluids]
+    out = {"fluids": pair.heat.sum(0) - point.flow * (pair.streams @ z[columns]).sum(0)}
     for place in network.places.values():
         if place.kind == "surface":
             flow = point.films[place.name] * (_read(place.mean, z) - z[network.column(str(place.fluid))])
@@ -103,10 +104,6 @@ def unbalanced(pair: Pair, point: Point, z: np.ndarray) -> float:
             left[link.places[1]] += flow
     scale = np.abs(pair.watts).sum(0) + np.abs(pair.heat).sum(0)
     return max(float(np.max(np.abs(heat) / scale)) for heat in (*left.values(), *out.values(), sum(left.values())))
-
-
-def _columns(pair: Pair) -> list[int]:
-    return [pair.network.column(name) for name in pair.fluids]
 
 
 def _read(mean: Any, z: np.ndarray) -> np.ndarray:

@@ -10,9 +10,7 @@ With `--case` the diagnosis of that case instead, with its whole catalogue and w
 from __future__ import annotations
 
 import argparse
-import time
 import tracemalloc
-from collections.abc import Callable
 from dataclasses import replace
 from itertools import pairwise
 from pathlib import Path
@@ -25,7 +23,7 @@ from lumped.model.build import bare_network, node_link, node_source
 from lumped.model.network import Network, Parameter
 from lumped.transfer.laws import Fixed, InputPower, Linear, Power
 from measured.case import Case, Channel, Model, Test
-from scripts.published import cpu_s, measured_row as row, print_rows, write_rows
+from scripts.published import measured_row as row, print_rows, timed, write_rows
 from thermoscope.case_folder.folder import load_case
 from validation import diagnose
 from validation.comparison.linearisation import segments
@@ -96,13 +94,6 @@ def case() -> Case:
     return Case("motor", Model(net), (*tests[:3], replace(tests[3], role="validate")))
 
 
-def timed(work: Callable[[], Any]) -> tuple[Any, float, float]:
-    """Result, wall seconds, CPU seconds of this process and its children."""
-    begun, cpu = time.perf_counter(), cpu_s()
-    out = work()
-    return out, time.perf_counter() - begun, cpu_s() - cpu
-
-
 def kinds(now: Case) -> list[str]:
     """The first kinds of effects that come to 60 candidates together."""
     every = [e.kind for e in candidates(now)]
@@ -143,7 +134,7 @@ def rows(samples: int) -> list[dict[str, Any]]:
     now, out, name = case(), [], f"{CANDIDATES} candidates"
     chosen = kinds(now)
     diagnose(now, chosen)  # compile
-    _, wall, cpu = timed(lambda: diagnose(now, chosen))
+    wall, cpu, _ = timed(lambda: diagnose(now, chosen))
     out += [row(name, "wall time", "s", wall, LIMIT_S, "limit"), row(name, "CPU time", "s", cpu, 2 * LIMIT_S, "limit")]
     net = motor()
     sizes = {n: peak(Case("long", Model(net), (recorded(net, "long", n, 1.0),))) for n in (samples // 4, samples)}
@@ -157,7 +148,7 @@ def rows_of(folder: Path) -> list[dict[str, Any]]:
     now, out = load_case(folder).case, []
     few = kinds(now)
     for what, limit, chosen in (("whole catalogue", WHOLE_S, None), (f"{CANDIDATES} candidates", LIMIT_S, few)):
-        _, wall, cpu = timed(lambda chosen=chosen: diagnose(now, chosen, plan=False))
+        wall, cpu, _ = timed(lambda chosen=chosen: diagnose(now, chosen, plan=False))
         name = f"{now.name}, {what}"
         out += [row(name, "wall time", "s", wall, limit, "limit"), row(name, "CPU time", "s", cpu, 2 * limit, "limit")]
     return out

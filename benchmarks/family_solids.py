@@ -10,7 +10,6 @@ are printed at the end. The families take turns.
 from __future__ import annotations
 
 import argparse
-import json
 import time
 from itertools import product
 from pathlib import Path
@@ -23,6 +22,7 @@ from geom.description.machine import Machine
 from geom.description.part import Helix
 from geom.families.family import Family
 from geom.machine_file import families
+from scripts.published import add_lines, json_lines
 
 TOLERANCE_MM = 0.2  # at 2 mm the triangles of ports of a few mm fold
 
@@ -74,13 +74,12 @@ def main() -> None:
     parser.add_argument("--family", choices=list(families()))
     args = parser.parse_args()
     of = [family for name, family in families().items() if args.family in (None, name)]
-    lines = [json.loads(text) for text in args.file.read_text().splitlines()] if args.file.exists() else []
+    lines = json_lines(args.file)
     done = {(line["family"], line["seed"]) for line in lines}
-    with args.file.open("a") as out:
-        for seed, family in product(range(args.machines), of):
-            if (family.name, seed) not in done:
-                lines.append(checked(family, seed))
-                print(json.dumps(lines[-1]), file=out, flush=True)
+    for seed, family in product(range(args.machines), of):
+        if (family.name, seed) not in done:
+            lines.append(checked(family, seed))
+            add_lines(args.file, lines[-1])
     for family in of:
         print(counts(lines, family.name))
 

@@ -11,8 +11,6 @@ from __future__ import annotations
 import argparse
 import os
 import tempfile
-import time
-from collections.abc import Callable
 from typing import Any
 
 import numpy as np
@@ -33,7 +31,7 @@ from geom import (
 from geom.machine_file import machine_from
 from geom.meshing.mesher import _planned
 from geom.solids.cad import solids
-from scripts.published import measured_row as row, print_rows, write_rows
+from scripts.published import measured_row as row, print_rows, timed, write_rows
 
 SETTINGS: dict[str, dict[str, Any]] = {
     "coarse": COARSE,
@@ -41,16 +39,6 @@ SETTINGS: dict[str, dict[str, Any]] = {
     "150k": {"size_m": 0.015, "segments": 60, "across": 3},
     "fine": FINE,
 }
-
-
-def cpu_seconds(run: Callable[[], object], repeats: int = 2) -> tuple[float, Any]:
-    """Least CPU time (s) over the repeats, and the last result."""
-    times, result = [], None
-    for _ in range(repeats):
-        start = time.process_time()
-        result = run()
-        times.append(time.process_time() - start)
-    return min(times), result
 
 
 def volumes(mesh: NamedMesh) -> np.ndarray:
@@ -74,10 +62,10 @@ def anew(machine: Machine, **setting: Any) -> NamedMesh:
 def motor_rows() -> list[dict[str, Any]]:
     motor = load_machine("series-dc-100kw")
     build_mesh(motor, **COARSE)  # imports
-    cad, _ = cpu_seconds(lambda: [solids(part) for part in motor.parts])
+    _, cad, _ = timed(lambda: [solids(part) for part in motor.parts], 2)
     rows = [row("series-dc-100kw", "solids", "s", cad)]
     for name, setting in SETTINGS.items():
-        seconds, mesh = cpu_seconds(lambda setting=setting: anew(motor, **setting))
+        _, seconds, mesh = timed(lambda setting=setting: anew(motor, **setting), 2)
         case = f"series-dc-100kw, {name}"
         rows += [row(case, "mesh", "s", seconds), row(case, "nodes", "1", len(mesh.points))]
         rows += [
@@ -85,11 +73,11 @@ def motor_rows() -> list[dict[str, Any]]:
             row(case, "least quality", "1", min(mesh_quality(mesh).values())),
         ]
         rows += [row(case, "volume error", "1", volume_error(motor, mesh))]
-    seconds, _ = cpu_seconds(lambda: build_mesh(motor, **SETTINGS["150k"]))
+    _, seconds, _ = timed(lambda: build_mesh(motor, **SETTINGS["150k"]), 2)
     rows += [row("series-dc-100kw, 150k", "mesh, refined", "s", seconds)]
     with tempfile.TemporaryDirectory() as folder:
         build_mesh(motor, **FINE, cache=folder)
-        seconds, _ = cpu_seconds(lambda: build_mesh(motor, **FINE, cache=folder))
+        _, seconds, _ = timed(lambda: build_mesh(motor, **FINE, cache=folder), 2)
     return [*rows, row("series-dc-100kw, fine", "mesh from cache", "s", seconds), *rebuild_rows(motor)]
 
 
@@ -101,11 +89,11 @@ def rebuild_rows(motor: Machine) -> list[dict[str, Any]]:
         for part in motor.parts:
             solids(part, folder)
         before = set(os.listdir(folder))
-        again, _ = cpu_seconds(lambda: [solids(part, folder) for part in changed.parts], repeats=1)
+        _, again, _ = timed(lambda: [solids(part, folder) for part in changed.parts])
         built = len(set(os.listdir(folder)) - before)
-        out, files = cpu_seconds(lambda: export_cad(motor, folder, ("step",), cache=folder), repeats=1)
-        back, _ = cpu_seconds(lambda: import_step(files["step"]), repeats=1)
-    areas, _ = cpu_seconds(lambda: part_table(motor))
+        _, out, files = timed(lambda: export_cad(motor, folder, ("step",), cache=folder))
+        _, back, _ = timed(lambda: import_step(files["step"]))
+    _, areas, _ = timed(lambda: part_table(motor), 2)
     rows = [
         row(motor.name, "solids after a change of fins", "s", again),
         row(motor.name, "solids built for it", "1", built),
@@ -118,7 +106,7 @@ def library_rows() -> list[dict[str, Any]]:
     rows = []
     for name in library():
         machine = load_machine(name)
-        seconds, mesh = cpu_seconds(lambda machine=machine: anew(machine))
+        _, seconds, mesh = timed(lambda machine=machine: anew(machine), 2)
         rows += [row(name, "mesh", "s", seconds), row(name, "nodes", "1", len(mesh.points))]
         rows += [row(name, "volume error", "1", volume_error(machine, mesh))]
         rows += [row(name, "least quality", "1", min(mesh_quality(mesh).values()))]

@@ -21,7 +21,7 @@ from hidden.page import diagram, markdown
 from hidden.run import Wanted, answered, pairs, run, run_folders
 from hidden.score import met, rows
 
-from scripts.published import write_rows
+from scripts.published import json_lines, write_rows
 
 
 def arguments() -> argparse.Namespace:
@@ -58,7 +58,7 @@ def main() -> None:
     if a.sums:
         file = (a.out or Path("out/hidden-sums")) / "sums.jsonl"
         sums.run(a.seeds, a.skip, a.count, a.kinds, file)
-        return print("\n".join(sums.markdown(sums.rows(file))))
+        return print("\n".join(sums.markdown(json_lines(file))))
     labels = plan(a.seeds, a.skip + a.count, a.classes, a.kinds)[a.skip :]
     if a.audit:
         return print(audit.run(labels, a.out or Path("out/hidden-audit"), a.samples, a.nested))

@@ -15,20 +15,19 @@ import os
 import subprocess
 import sys
 import tempfile
-import time
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 from typing import Any
 
 import numpy as np
-from peers.network import peers, reference, timed
+from peers.network import peers, reference
 
 from lumped.integration.ensemble import dask_cluster, ensemble
 from lumped.integration.simulate import Record, simulate
 from lumped.model.build import bare_network, node_link, node_source
 from lumped.model.network import Network, Parameter
 from lumped.transfer.laws import Fixed, InputPower, Linear, Power, Radiation
-from scripts.published import measured_row as row, print_rows, write_rows
+from scripts.published import measured_row as row, print_rows, timed, write_rows
 
 MEMBERS = 1000
 
@@ -90,7 +89,7 @@ def against_peers() -> list[dict[str, Any]]:
     simulate(net, record(3), keep_states=True)
     for kind, make in RECORDS.items():
         rec = make(3600)
-        seconds, curve = timed(lambda rec=rec: simulate(net, rec, keep_states=True).z[:, :30])
+        _, seconds, curve = timed(lambda rec=rec: simulate(net, rec, keep_states=True).z[:, :30], 3)
         exact, case = reference(net, rec), f"30 nodes, 3600 samples, {kind}"
         error = float(np.abs(curve - exact).max())
         for name, peer_seconds, peer_error in peers(net, rec, exact, error, kind == "road"):
@@ -104,7 +103,7 @@ def against_peers() -> list[dict[str, Any]]:
 def tangents(net: Network, rec: Record, seconds: float) -> list[dict[str, Any]]:
     mean = [net.place("n0").mean]
     simulate(net, record(3), rows=mean, tangents=net.parameters[:40])
-    cost, _ = timed(lambda: simulate(net, rec, rows=mean, tangents=net.parameters[:40]))
+    _, cost, _ = timed(lambda: simulate(net, rec, rows=mean, tangents=net.parameters[:40]), 3)
     return [row("30 nodes, 40 sensitivities", "time", "s", cost, 10 * seconds, "10 runs")]
 
 
@@ -113,11 +112,11 @@ def sizes() -> list[dict[str, Any]]:
     small, mean = ring(10), [ring(10).place("n0").mean]
     out = []
     for hours in (1, 3, 9, 27):
-        cost, _ = timed(lambda hours=hours: simulate(small, record(3600 * hours), rows=mean), 2)
+        _, cost, _ = timed(lambda hours=hours: simulate(small, record(3600 * hours), rows=mean), 2)
         out.append(row(f"10 nodes, {hours} h at 1 Hz", "time", "s", cost))
     for n in (10, 30, 100, 300):
         network = ring(n)
-        cost, _ = timed(lambda network=network: simulate(network, record(3600, 10.0)), 2)
+        _, cost, _ = timed(lambda network=network: simulate(network, record(3600, 10.0)), 2)
         out.append(row(f"{n} nodes, 360 steps", "time", "s", cost))
     return out
 
@@ -128,8 +127,8 @@ def ensembles() -> list[dict[str, Any]]:
     members = [{p.name: float(np.exp(0.2 * random.standard_normal())) for p in net.parameters} for _ in range(MEMBERS)]
     rows = [net.place("n0").mean]
     with ThreadPoolExecutor(1) as alone:
-        one, expected = walled(lambda: ensemble(net, rec, members, rows, alone))
-    all_cores, y = walled(lambda: ensemble(net, rec, members, rows))
+        one, _, expected = timed(lambda: ensemble(net, rec, members, rows, alone))
+    all_cores, _, y = timed(lambda: ensemble(net, rec, members, rows))
     assert np.array_equal(y, expected)
     cores, case = os.cpu_count(), f"{MEMBERS} members, 30 nodes, 360 steps"
     out = [row(case, f"time, {cores} threads", "s", all_cores, one, "1 thread")]
@@ -140,15 +139,9 @@ def ensembles() -> list[dict[str, Any]]:
     options = {"n_workers": cores, "threads_per_worker": 1, "dashboard_address": None}
     with LocalCluster(**options) as cluster, dask_cluster(cluster.scheduler_address) as executor:
         ensemble(net, rec, members[: 4 * (cores or 1)], rows, executor, 1)
-        spread, y = walled(lambda: ensemble(net, rec, members, rows, executor))
+        spread, _, y = timed(lambda: ensemble(net, rec, members, rows, executor))
     assert np.array_equal(y, expected)
     return [*out, row(case, f"time, Dask, {cores} processes", "s", spread, one, "1 thread")]
-
-
-def walled(run: Any) -> tuple[float, Any]:
-    start = time.perf_counter()
-    out = run()
-    return time.perf_counter() - start, out
 
 
 FIRST = """

@@ -17,8 +17,6 @@ import json
 import os
 import sys
 import tempfile
-import time
-from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -30,7 +28,7 @@ sys.path = [p for p in sys.path if Path(p).resolve() != Path(__file__).resolve()
 from geom import NamedMesh, build_mesh, load_machine
 from lumped.model.network import Row
 from measured.case import Channel, Test
-from scripts.published import measured_row as row, print_rows, write_rows
+from scripts.published import measured_row as row, print_rows, timed, write_rows
 from viz import split, write_recording
 from viz.colours import LIGHT
 from viz.data import Comparison
@@ -42,13 +40,6 @@ from viz.rendering.nodes import SplitMesh
 from viz.rendering.scene import View
 
 FRAMES, SENSORS = 60, 17
-
-
-def timed(run: Callable[[], Any]) -> tuple[float, float, Any]:
-    """Wall and CPU seconds, and the result."""
-    wall, cpu = time.perf_counter(), time.process_time()
-    out = run()
-    return time.perf_counter() - wall, time.process_time() - cpu, out
 
 
 def field(nodes: SplitMesh, share: float) -> np.ndarray:

@@ -9,7 +9,6 @@ the table into docs/hidden-effects.md.
 from __future__ import annotations
 
 import argparse
-import json
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
@@ -25,7 +24,7 @@ from hidden.user import case_of
 from geom.arrays import Array
 from measured.case import Case, Recorded, Test
 from measured.recordings.grid import averaged, read, rms
-from scripts.published import ROOT, publish, table
+from scripts.published import ROOT, add_lines, json_lines, publish, table
 
 EVERY, MOVED = (2, 10), 0.1
 HABITS = {
@@ -69,21 +68,16 @@ def asked(label: Label, every: int, habit: str) -> dict[str, Any]:
     return {"case": label.case, "kind": label.machine, "habit": habit, "every": every, **found}
 
 
-def rows(file: Path) -> list[dict[str, Any]]:
-    return [json.loads(line) for line in file.read_text().splitlines()] if file.is_file() else []
-
-
 def run(labels: Sequence[Label], habits: Sequence[str], every: Sequence[int], file: Path) -> None:
     """What the file does not have yet; one line printed per answer."""
     file.parent.mkdir(parents=True, exist_ok=True)
-    done = {(r["case"], r["habit"], r["every"]) for r in rows(file)}
+    done = {(r["case"], r["habit"], r["every"]) for r in json_lines(file)}
     for label in labels:
         for habit, n in [("whole", 1), *((h, n) for h in habits for n in every)]:
             if (label.case, habit, n) in done:
                 continue
             found = {**asked(label, n, habit), "label": label.document()}
-            with file.open("a") as f:
-                f.write(json.dumps(found) + "\n")
+            add_lines(file, found)
             print(line(label, found), flush=True)
 
 
@@ -152,7 +146,7 @@ def main() -> None:
     a = parser.parse_args()
     if not a.score:
         run(plan(a.seeds, a.skip + a.count, a.classes, a.kinds)[a.skip :], a.habits, a.every, a.out)
-    found = markdown(rows(a.out), rows(a.before))
+    found = markdown(json_lines(a.out), json_lines(a.before))
     print(found)
     if a.page:
         publish(PAGE, "steadiness", found)

@@ -15,7 +15,8 @@ import datetime
 import json
 import os
 import platform
-from collections.abc import Iterable, Mapping, Sequence
+import time
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import Any, TextIO
 
@@ -92,6 +93,28 @@ def cpu_s() -> float:
 
     both = (resource.getrusage(who) for who in (resource.RUSAGE_SELF, resource.RUSAGE_CHILDREN))
     return sum(u.ru_utime + u.ru_stime for u in both)
+
+
+def timed(run: Callable[[], Any], repeats: int = 1) -> tuple[float, float, Any]:
+    """Least wall and least CPU seconds over the repeats, those of processes that it started too; the last result."""
+    seconds, out = [], None
+    for _ in range(repeats):
+        wall, cpu = time.perf_counter(), cpu_s()
+        out = run()
+        seconds.append((time.perf_counter() - wall, cpu_s() - cpu))
+    walls, cpus = zip(*seconds, strict=True)
+    return min(walls), min(cpus), out
+
+
+def json_lines(file: Path) -> list[dict[str, Any]]:
+    """Rows of a run that may go on: a line of JSON each; none where there is no file yet."""
+    return [json.loads(line) for line in file.read_text().splitlines()] if file.exists() else []
+
+
+def add_lines(file: Path, *rows: Mapping[str, Any]) -> None:
+    """Further rows at the end of such a file."""
+    with file.open("a") as out:
+        out.writelines(f"{json.dumps(row)}\n" for row in rows)
 
 
 def write_rows(file: Path | str | None, benchmark: str, rows: Sequence[Mapping[str, Any]], **more: Any) -> None:

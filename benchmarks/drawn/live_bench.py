@@ -8,7 +8,6 @@ Drawn plants of `simulated.bench` in simulated time. Every run is a line of OUT;
 from __future__ import annotations
 
 import argparse
-import json
 import tempfile
 import time
 from collections.abc import Iterator, Sequence
@@ -22,7 +21,7 @@ from extras.bench.live.planning import LENGTHS_MIN, MINUTE, Choice, choices, is_
 from extras.bench.live.settings import Bench, SetPoint, read_bench
 from extras.bench.live.steering import Policy, Steering
 from extras.bench.live.store import BenchError, Store
-from scripts.published import publish, table
+from scripts.published import add_lines, json_lines, publish, table
 from simulated.bench.kinds import KINDS, write_case
 from simulated.bench.plant import Plant, drawn
 from thermoscope.plugin import load_case
@@ -134,14 +133,13 @@ def main() -> None:
     parser.add_argument("--page", type=Path, help="write the table between the markers of this page")
     a = parser.parse_args()
     a.out.parent.mkdir(parents=True, exist_ok=True)
-    rows = [json.loads(line) for line in a.out.read_text().splitlines()] if a.out.exists() else []
+    rows = json_lines(a.out)
     done = {(r["seed"], r["method"]) for r in rows}
     for method in a.methods:
         for i in range(a.plants):
             if (a.first + i, method) not in done:
                 rows.append(run(list(KINDS)[i % len(KINDS)], a.first + i, method))
-                with a.out.open("a") as file:
-                    file.write(json.dumps(rows[-1]) + "\n")
+                add_lines(a.out, rows[-1])
                 print(
                     {k: rows[-1][k] for k in ("kind", "method", "truth", "stop", "minutes", "crossed", "cpu_s")},
                     flush=True,

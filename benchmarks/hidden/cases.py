@@ -83,10 +83,6 @@ def twins(kind: Archetype, name: str, size: float, within: float = DECISIVE) -> 
     return tuple(n for n, share in row["unlike"].items() if share * most < within)
 
 
-def right(kind: Archetype, name: str) -> tuple[str, ...]:
-    return kind.words.get(name, (name,))
-
-
 def _room(kind: Archetype, hidden: Hidden, key: str) -> float:
     """The largest size that nature allows."""
     row = sizes()[kind.name][key]
@@ -104,11 +100,11 @@ def _hide(kind: Archetype, bare: Label, chosen: Sequence[Hidden], size: float) -
     return replace(
         bare,
         truth=tuple(h.name for h in chosen),
-        right=tuple(right(kind, h.name) for h in chosen),
+        right=tuple(kind.right(h.name) for h in chosen),
         twins=tuple(twins(kind, h.name, s) for h, s in zip(chosen, own, strict=True)),
         size=0.0 if any(h.declared for h in chosen) else size,
         amplitude=tuple(s * table[h.name]["size"] for h, s in zip(chosen, own, strict=True)),
-        area=area_of(kind.name, right(kind, chosen[0].name)[0]),
+        area=area_of(kind.name, kind.right(chosen[0].name)[0]),
     )
 
 
@@ -123,8 +119,8 @@ def _two(kind: Archetype, bare: Label, turn: int, rng: np.random.Generator) -> L
     """Two effects at 4 units, neither a twin of the other."""
     fit = _possible(kind, 4.0)
     a = fit[int(rng.integers(len(fit)))]
-    near = {*twins(kind, a.name, 4.0), *right(kind, a.name)}
-    others = [h for h in fit if not near & {*twins(kind, h.name, 4.0), *right(kind, h.name)}]
+    near = {*twins(kind, a.name, 4.0), *kind.right(a.name)}
+    others = [h for h in fit if not near & {*twins(kind, h.name, 4.0), *kind.right(h.name)}]
     return _hide(kind, bare, [a, others[int(rng.integers(len(others)))]], 4.0)
 
 
@@ -149,7 +145,7 @@ def _condition(kind: Archetype, bare: Label, turn: int, rng: np.random.Generator
     return replace(
         bare,
         truth=(h.name,),
-        right=(right(kind, h.name),),
+        right=(kind.right(h.name),),
         twins=(twins(kind, whole, size),),
         size=size,
         test=p.name,

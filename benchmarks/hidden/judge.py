@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from math import sqrt
 from typing import Any
+
+from scipy.stats import binomtest
 
 from hidden.odds import fault_of
 
@@ -12,14 +13,10 @@ CLAIMS = ("named", "group", "several", "outside")
 Answer = Mapping[str, Any]
 
 
-def wilson(k: int, n: int, z: float = 1.96) -> tuple[float, float]:
+def wilson(k: int, n: int) -> tuple[float, float]:
     """95 % interval of a rate, Wilson 1927."""
-    if n == 0:
-        return 0.0, 1.0
-    p, d = k / n, 1.0 + z**2 / n
-    half = z * sqrt(p * (1.0 - p) / n + z**2 / (4.0 * n**2)) / d
-    middle = (p + z**2 / (2.0 * n)) / d
-    return max(0.0, middle - half), min(1.0, middle + half)
+    low, high = binomtest(k, n).proportion_ci(method="wilson") if n else (0.0, 1.0)
+    return float(low), float(high)
 
 
 def reported(answer: Answer) -> list[str]:

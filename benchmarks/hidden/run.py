@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import time
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -17,24 +16,21 @@ from hidden.cases import Label, edits_of, records_of
 from hidden.folders import diagnosed, found_in, words_of
 from hidden.peers import peers
 from hidden.user import case_of
+from scripts.published import add_lines, json_lines
 
 LABELS, ANSWERS = "labels.jsonl", "answers.jsonl"
 COMPARED, FOLLOWED = ("one", "nothing"), ("one", "pair")  # classes peers are asked about; what is said is acted on
 
 
 def answered(out: Path) -> dict[str, dict]:
-    return {a["case"]: a for a in _lines(out / ANSWERS)}
+    return {a["case"]: a for a in json_lines(out / ANSWERS)}
 
 
 def pairs(out: Path) -> list[tuple[dict, dict]]:
     """Labels and answers that belong together."""
     done = odds.unordered(answered(out))
-    labels = {label["case"]: odds.unordered(label) for label in _lines(out / LABELS)}
+    labels = {label["case"]: odds.unordered(label) for label in json_lines(out / LABELS)}
     return [(labels[name], found) for name, found in done.items() if name in labels]
-
-
-def _lines(file: Path) -> list[dict]:
-    return [json.loads(line) for line in file.read_text().splitlines()] if file.exists() else []
 
 
 @dataclass(frozen=True)
@@ -50,15 +46,13 @@ class Wanted:
 def run(labels: Sequence[Label], out: Path, wanted: Wanted, jobs: int) -> None:
     """Diagnose what `out` does not have yet; one line printed per case."""
     out.mkdir(parents=True, exist_ok=True)
-    known = {label["case"] for label in _lines(out / LABELS)}
-    with (out / LABELS).open("a") as file:
-        file.writelines(json.dumps(x.document()) + "\n" for x in labels if x.case not in known)
+    known = {label["case"] for label in json_lines(out / LABELS)}
+    add_lines(out / LABELS, *(x.document() for x in labels if x.case not in known))
     done = answered(out)
     todo = [label for label in labels if label.case not in done]
     work = (delayed(_diagnosed)(label, wanted) for label in todo)
     for label, found in zip(todo, Parallel(jobs, return_as="generator")(work), strict=True):
-        with (out / ANSWERS).open("a") as file:
-            file.write(json.dumps(found) + "\n")
+        add_lines(out / ANSWERS, found)
         print(line(label, found), flush=True)
 
 
@@ -69,9 +63,8 @@ def run_folders(root: Path, out: Path, only: Sequence[str], count: int, jobs: in
     todo = {name: truth for name, truth in found_in(root, only, count).items() if name not in done}
     work = (delayed(diagnosed)(root / name, truth, words_of(words)) for name, truth in todo.items())
     for label, found in Parallel(jobs, return_as="generator")(work):
-        for file, told in ((LABELS, label.document()), (ANSWERS, found)):
-            with (out / file).open("a") as f:
-                f.write(json.dumps(told) + "\n")
+        add_lines(out / LABELS, label.document())
+        add_lines(out / ANSWERS, found)
         print(line(label, found), flush=True)
 
 

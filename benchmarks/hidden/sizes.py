@@ -78,7 +78,7 @@ def _unit(V: Array, i: int) -> float:
 def _row(kind: Archetype, answers: Seen, V: Array, hidden: Hidden, index: dict[str, int]) -> dict:
     """Of what is hidden against everything that a textbook would suspect."""
     i = index[f"true {hidden.name}"]
-    names = kind.words.get(hidden.name, (hidden.name,))
+    names = kind.right(hidden.name)
     same = next((index[n] for n in names if n in index), None)
     shown = max(float(V[i, same] / V[same, same]), 0.05) if same is not None and V[same, same] > 0.0 else 1.0
     others = {

@@ -10,7 +10,6 @@ from __future__ import annotations
 
 import shutil
 import sys
-import time
 from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
@@ -23,6 +22,7 @@ from geom.constants import SIGMA, ZERO_C
 from lumped.integration.simulate import Record
 from lumped.model.network import Network
 from lumped.numerics.terms import SMOOTH
+from scripts.published import timed
 
 TOLERANCES = (1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8, 1e-9, 1e-10)
 USUAL = 1e-6
@@ -176,16 +176,6 @@ def diffrax_kvaerno(steps: bool) -> Callable[[Equations, np.ndarray, float], Run
     return make
 
 
-def timed(run: Callable[[], Any], repeats: int = 3) -> tuple[float, Any]:
-    """Best CPU seconds and the result."""
-    best, out = np.inf, None
-    for _ in range(repeats):
-        start = time.process_time()
-        out = run()
-        best = min(best, time.process_time() - start)
-    return best, out
-
-
 def reference(net: Network, rec: Record) -> np.ndarray:
     """SciPy's Radau at rtol 1e-10, never over a sample."""
     return scipy_runs("Radau", True, True)(Equations.of(net, rec), np.full(len(net.states), 20.0), 1e-10)()
@@ -217,9 +207,9 @@ def _chosen(name: str, make: Callable[[float], Run], exact: np.ndarray, ours: fl
         run = make(rtol)
         error = float(np.abs(run() - exact).max())  # compiles
         if best is None and error <= ours:
-            best = f"{name}, equal error, {rtol:g}", timed(run, 2)[0], error
+            best = f"{name}, equal error, {rtol:g}", timed(run, 2)[1], error
         if rtol == USUAL:
-            rows.append((f"{name}, {rtol:g}", timed(run, 2)[0], error))
+            rows.append((f"{name}, {rtol:g}", timed(run, 2)[1], error))
         if best and rtol >= USUAL and rows:
             break
     return [*([best] if best else []), *rows]

@@ -1,4 +1,4 @@
-"""Compiled loops over simplices: pattern, volumes, conduction and mass, straight into compressed rows.
+"""Compiled loops over simplices: volumes, conduction and mass, straight into compressed rows.
 
 Cells are (m, k) point numbers, k = 3 for triangles and 4 for tetrahedra.
 """
@@ -11,49 +11,6 @@ import numpy as np
 from numba import njit
 
 _OPTIONS: dict[str, Any] = {"cache": True, "error_model": "numpy"}
-
-
-@njit(**_OPTIONS)
-def pattern(cells, n):  # type: ignore[no-untyped-def]
-    """(n + 1,) row starts and sorted columns of the graph in which points of one cell are neighbours."""
-    m, k = cells.shape
-    start = np.zeros(n + 1, np.int32)
-    for e in range(m):
-        for a in range(k):
-            start[cells[e, a] + 1] += 1
-    for i in range(n):
-        start[i + 1] += start[i]
-    owner, fill = np.empty(m * k, np.int32), start[:-1].copy()
-    for e in range(m):
-        for a in range(k):
-            owner[fill[cells[e, a]]] = e
-            fill[cells[e, a]] += 1
-    last_row, indptr = np.full(n, -1, np.int32), np.zeros(n + 1, np.int32)
-    for i in range(n):
-        count = 0
-        for p in range(start[i], start[i + 1]):
-            for a in range(k):
-                j = cells[owner[p], a]
-                if last_row[j] != i:
-                    last_row[j] = i
-                    count += 1
-        indptr[i + 1] = indptr[i] + count
-    indices = np.empty(indptr[n], np.int32)
-    last_row[:] = -1
-    for i in range(n):
-        q = indptr[i]
-        for p in range(start[i], start[i + 1]):
-            for a in range(k):
-                j = cells[owner[p], a]
-                if last_row[j] != i:
-                    last_row[j] = i
-                    r = q
-                    while r > indptr[i] and indices[r - 1] > j:
-                        indices[r] = indices[r - 1]
-                        r -= 1
-                    indices[r] = j
-                    q += 1
-    return indptr, indices
 
 
 @njit(**_OPTIONS)

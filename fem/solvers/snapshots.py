@@ -105,7 +105,8 @@ def snapshots(
     nominal = field.stiffness(films, contacts)
     fluxes = np.column_stack([field.flux(face) for face in field.films])
     both = np.column_stack([loads, fluxes])
-    points = [(films, contacts, 0.0, np.column_stack([both, *_dipoles(field)]))]
+    dipoles = [_at(field.n, (t.a, 1.0), (t.b, -1.0)) for t in field.contacts.values()]
+    points = [(films, contacts, 0.0, np.column_stack([both, *dipoles]))]
     points += [(films, contacts, shift, loads) for shift in recipe.shifts]
     points += [(films, contacts, shift, fluxes) for shift in recipe.flux_shifts]
     rng = np.random.default_rng(recipe.seed)
@@ -161,10 +162,6 @@ def opposed_points(
             h |= {face: films[face] / factor for face, film in field.films.items() if film.trace.part == part}
         out.append((h, g))
     return out
-
-
-def _dipoles(field: FieldModel) -> list[Floats]:
-    return [_at(field.n, (t.a, 1.0), (t.b, -1.0)) for t in field.contacts.values()]
 
 
 def _at(n: int, *sides: tuple[Trace, float]) -> Floats:

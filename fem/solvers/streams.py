@@ -42,7 +42,8 @@ def cut(mesh: NamedMesh, fluid: str, along: Callable[[Floats], Floats], cells: i
     """
     faces = {name: p for name, p in mesh.patches.items() if p.fluid == fluid}
     if not faces:
-        raise InputError(f"no face is washed by '{fluid}'", "stream", f"fluids: {', '.join(_fluids(mesh))}")
+        fluids = sorted({p.fluid for p in mesh.patches.values()})
+        raise InputError(f"no face is washed by '{fluid}'", "stream", f"fluids: {', '.join(fluids)}")
     where = {name: along(mesh.points[p.facets].mean(1)) for name, p in faces.items()}
     low, high = min(s.min() for s in where.values()), max(s.max() for s in where.values())
     number = {
@@ -90,7 +91,3 @@ def _cells(field: FieldModel, stream: Stream) -> list[str]:
     if not cells:
         raise InputError(f"no cells of stream '{stream.fluid}'", "flowing", "cut the mesh along the stream first")
     return sorted(cells, key=lambda f: int(f.rpartition("@")[2]))
-
-
-def _fluids(mesh: NamedMesh) -> list[str]:
-    return sorted({p.fluid for p in mesh.patches.values()})

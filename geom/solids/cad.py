@@ -173,12 +173,9 @@ def carved(shape: CadShape) -> list[cq.Solid]:
         shells = [shell.wrapped for shell in body.Shells()]
         inside = [shell.wrapped.Reversed() for void in voids for shell in void.Shells()]
         body = Boundary().solid([*shells, *inside])
-    tools = [_tool(cut) for cut in shape.cuts if not isinstance(cut, Helix)]
+    pieces = (cut for cut in shape.cuts if not isinstance(cut, Helix))
+    tools = [_rod(piece) if isinstance(piece, Rod) else stacked([piece])[0] for piece in pieces]
     return [cq.Solid(solid.wrapped) for solid in body.cut(*tools).Solids()] if tools else [body]
-
-
-def _tool(piece: Prism | Rod) -> cq.Solid:
-    return _rod(piece) if isinstance(piece, Rod) else stacked([piece])[0]
 
 
 def _rod(rod: Rod) -> cq.Solid:

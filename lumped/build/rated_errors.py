@@ -46,11 +46,8 @@ def hot_rows(network: Network, rated: Rated) -> dict[str, Row]:
     """The hot spots as rows over the network's z."""
     shapes = network.recovery
     assert isinstance(shapes, Shapes)
-    return {name: _at_node(shapes.parts[name.removeprefix(HOT)], node) for name, node in rated.nodes.items()}
-
-
-def _at_node(shape: PartShape, node: int) -> Row:
-    return Row(shape.states, shape.V[node])
+    nodes = ((name, shapes.parts[name.removeprefix(HOT)], node) for name, node in rated.nodes.items())
+    return {name: Row(shape.states, shape.V[node]) for name, shape, node in nodes}
 
 
 def cached_errors(built: Built, looks: MonitoredPlaces, multipliers: Mapping[str, float] = NOMINAL) -> Rated:

@@ -20,7 +20,8 @@ MAPPINGS = {  # neutral value, least, most
 
 def read_parameters(network: Network, top: Table, nodes: Mapping[str, Table]) -> tuple[Parameter, ...]:
     """All parameters of a file."""
-    parameters = (*_inline(network, top, nodes), *_of_circuits(network, top), *_parameters(network, top))
+    tables = [_whole(_parameter(name, table), network) for name, table in top.tables("parameters").items()]
+    parameters = (*_inline(network, top, nodes), *_of_circuits(network, top), *tables)
     names = [p.name for p in parameters]
     for name in (n for n in names if names.count(n) > 1):
         what = f"two parameters are called '{name}': prior_sd in a table makes one of that name"
@@ -64,10 +65,6 @@ def _of_circuits(network: Network, top: Table) -> list[Parameter]:
             Parameter(*acts[key], prior_sd=table.number(key), flow=key == "prior_sd") for key in acts if key in table
         ]
     return out
-
-
-def _parameters(network: Network, top: Table) -> list[Parameter]:
-    return [_whole(_parameter(name, table), network) for name, table in top.tables("parameters").items()]
 
 
 def _whole(p: Parameter, network: Network) -> Parameter:

@@ -77,13 +77,8 @@ class Vehicle:
     brakes: float = 3.0
     regeneration: float = 0.0
 
-    def load_torque(self, speed_mps: Array | float, slope: Array | float) -> Array | float:
-        """At the motor shaft, steady (N m); slope: rise over run. Downhill the gear takes its loss off the drive."""
-        T = self.wheel_torque(speed_mps, slope)
-        return np.where(T > 0.0, T / self.efficiency, T * self.efficiency)
-
     def wheel_torque(self, speed_mps: Array | float, slope: Array | float) -> Array:
-        """The same with a gear without loss (N m)."""
+        """At the motor shaft, steady, of a gear without loss (N m); slope: rise over run."""
         angle = np.arctan(slope)
         weight = self.mass * GRAVITY * (np.sin(angle) + self.rolling * np.cos(angle))
         drag = 0.5 * self.air_density * self.drag_area * np.asarray(speed_mps) ** 2

@@ -134,7 +134,8 @@ def nominal_coefficients(
 
 def motor_network(machine: Machine, condensed: Network) -> Network:
     """The condensed network of a motor, completed to a model that can run a test."""
-    around = surroundings(machine, (_contact(link) for link in condensed.links if link.kind == "contact"))
+    contacts = (link.name.removeprefix("contact:") for link in condensed.links if link.kind == "contact")
+    around = surroundings(machine, contacts)
     ports = {} if around.cooling is None else outlets(machine, condensed, around.cooling)
     network = replace(condensed, places={**condensed.places, **ports, **means(machine, condensed)})
     network = replace(with_channels(network), declared=declared(machine, network, around.contacts))
@@ -149,10 +150,6 @@ def motor_network(machine: Machine, condensed: Network) -> Network:
     losses = sources(machine, network)
     multipliers = parameters(machine, network, faces, films, streams, losses)
     return switched(machine, network.extended([*films, *streams], losses, multipliers))
-
-
-def _contact(link: Link) -> str:
-    return link.name.removeprefix("contact:")
 
 
 def _film_links(network: Network, face: Place, around: Surroundings) -> list[Link]:

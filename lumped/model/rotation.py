@@ -92,23 +92,16 @@ def in_one_piece(top: Topology, side: Collection[str], others: Collection[str]) 
 
 def _way(top: Topology, start: Collection[str], end: Collection[str], without: Collection[str]) -> list[str]:
     """The bodies on a shortest way between two sets; none where there is no way."""
-    before: dict[str, str] = dict.fromkeys(start, "")
+    ways: dict[str, list[str]] = {a: [] for a in start}
     edge = list(start)
-    while edge:
-        after = []
-        for a in edge:
-            for b in top.joined(a):
-                if b in end:
-                    body = a
-                    out = []
-                    while before[body]:
-                        out.append(body)
-                        body = before[body]
-                    return out
-                if b not in before and b not in without:
-                    before[b] = a
-                    after.append(b)
-        edge = after
+    for a in edge:  # grows while it is walked, so that nearer bodies come first
+        near = top.joined(a)
+        if any(b in end for b in near):
+            return ways[a]
+        for b in near:
+            if b not in ways and b not in without:
+                ways[b] = [*ways[a], b]
+                edge.append(b)
     return []
 
 

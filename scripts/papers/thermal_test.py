@@ -243,11 +243,8 @@ def pictures() -> dict[str, object]:
     """File name -> matplotlib figure."""
     from scripts.papers.machines import pictures as drawn
 
-    return {"figure-5.png": _figure_5(), "figure-6.png": _figure_6(), "figure-11.png": figure_11_drawn(), **drawn()}
-
-
-def figure_11_drawn() -> object:
-    return screened(screening().effects["magnets"].document(), title="Effects on the magnets")
+    effects = screened(screening().effects["magnets"].document(), title="Effects on the magnets")
+    return {"figure-5.png": _figure_5(), "figure-6.png": _figure_6(), "figure-11.png": effects, **drawn()}
 
 
 def _figure_5() -> object:

@@ -8,7 +8,7 @@ import pytest
 from hidden import judge
 from hidden.after import held_out
 from hidden.answer import answer
-from hidden.cases import SHARES, Label, plan, right
+from hidden.cases import SHARES, Label, plan
 from hidden.kinds import KINDS
 from hidden.page import markdown
 from hidden.peers import peers
@@ -103,7 +103,7 @@ def test_hidden_effects_have_a_name_in_the_catalogue_and_a_size(kind):
     inputs = {name for law in (x.law for x in (*network.links, *network.sources)) for name in law.reads}
     sites = {*network.states, *named, *(name.split(":", 1)[1] for name in named)}
     for hidden in (*kind.missing, *kind.passing):
-        told = [name.split("@") for name in right(kind, hidden.name)]
+        told = [name.split("@") for name in kind.right(hidden.name)]
         assert any(effect in known for effect, _ in told), hidden.name
         own = {"input.factor": inputs, "flow": {p.name for p in flows(network)}}
         assert all(set(place.split("|")) <= own.get(effect, sites) for effect, place in told), hidden.name
@@ -255,5 +255,5 @@ def test_the_true_effect_in_the_users_network_restores_the_fit():
     hidden = next(h for h in kind.missing if h.name == word)
     case = case_of(word, name, measured(kind, 21, hidden.make(amplitude)))
     base = calibrate(case, roles=("calibrate", "validate"))
-    restored = add(replace(case, model=base.model), right(kind, word)[0])
+    restored = add(replace(case, model=base.model), kind.right(word)[0])
     assert held_out(restored) ** 2 < 0.5 * held_out(base) ** 2

@@ -79,7 +79,8 @@ class Deviations:
 
 def deviations(of: ParameterPosterior, test: Test, places: Sequence[Place]) -> Deviations:
     """test : the record: time, inputs, boundaries, start; its channels do not matter"""
-    virtual = replace(test, channels=tuple(_virtual_channel(p, test) for p in places))
+    unread = np.zeros(test.time.size)
+    virtual = replace(test, channels=tuple(Channel(f"at {p.name}", p.name, p.row, unread) for p in places))
     network, free, size = acting(of, virtual)
     now = {**values_of(network, None), **of.values}
     boundary_names = {p.targets[0][0] for p in free if head(p) == "boundary"}
@@ -129,7 +130,3 @@ def _root(Sigma: Array) -> Array:
     """R with R R' = Sigma; rounding may have left it a little indefinite."""
     values, vectors = np.linalg.eigh(Sigma)
     return np.asarray(vectors * np.sqrt(np.maximum(values, 0.0)))
-
-
-def _virtual_channel(place: Place, test: Test) -> Channel:
-    return Channel(f"at {place.name}", place.name, place.row, np.zeros(test.time.size))

@@ -267,7 +267,10 @@ def judged_error(
     """The errors of a test, each with the expanded uncertainty it is held against."""
     y = _checked(network, test, values)
     uncertainty = uncertainties(network, test, values, doubt, budget, y)
-    rows = tuple(_against(row, u) for row, u in zip(_rows(test, y), uncertainty, strict=True))
+    rows = tuple(
+        replace(row, limit_K=u.limit_K, u_input_K=u.input_K, u_numeric_K=u.numeric_K)
+        for row, u in zip(_rows(test, y), uncertainty, strict=True)
+    )
     return TestError(test.name, test.role, rows, tuple(uncertainty))
 
 
@@ -286,10 +289,6 @@ def _checked(network: Network, test: Test, values: Mapping[str, float]) -> np.nd
 
 def _rows(test: Test, y: np.ndarray) -> list[ChannelError]:
     return [channel_error(c, test.time, y[:, j]) for j, c in enumerate(test.channels) if np.isfinite(c.y).any()]
-
-
-def _against(row: ChannelError, u: Uncertainty) -> ChannelError:
-    return replace(row, limit_K=u.limit_K, u_input_K=u.input_K, u_numeric_K=u.numeric_K)
 
 
 def channel_error(channel: Channel, time: np.ndarray, predicted: np.ndarray) -> ChannelError:

@@ -12,7 +12,6 @@ Source: Skilling 2006; Speagle 2020 (dynesty).
 
 from __future__ import annotations
 
-import json
 import time
 from collections.abc import Callable, Sequence
 from dataclasses import asdict, dataclass
@@ -28,6 +27,7 @@ from geom.one_thread import one_blas_thread
 from hidden.cases import Label, edits_of, records_of
 from hidden.user import case_of
 from measured.doubt import SIZES
+from scripts.published import add_lines, json_lines
 from validation.calibration.calibrate import Fit, InnerProduct
 from validation.comparison.linearisation import segments
 from validation.diagnosis import infer
@@ -182,12 +182,11 @@ def run(labels: Sequence[Label], out: Path, count: int, nested: bool) -> str:
     """Cases that the folder does not have yet, a line each; how many are within a nat, and how far off all are."""
     out.mkdir(parents=True, exist_ok=True)
     file = out / "audit.jsonl"
-    rows = [json.loads(line) for line in file.read_text().splitlines()] if file.exists() else []
+    rows = json_lines(file)
     done = {row["case"] for row in rows}
     for label in (label for label in labels if label.case not in done):
         new = [asdict(row) for row in audited(label, count, nested)]
-        with file.open("a") as f:
-            f.writelines(f"{json.dumps(row)}\n" for row in new)
+        add_lines(file, *new)
         rows += new
     off = np.array([r["laplace"] - r["sampled"] for r in rows])
     words = f"{np.sum(np.abs(off) <= CLOSE)} of {off.size} within {CLOSE:g} nat; off by {np.median(off):+.2f} (median)"

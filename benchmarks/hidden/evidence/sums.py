@@ -7,7 +7,6 @@ every kind in turn is held against the bound that the others ask for.
 
 from __future__ import annotations
 
-import json
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
@@ -19,7 +18,7 @@ from hidden.user import case_of
 from lumped.model.multipliers import parameter_values
 from measured.case import Case
 from measured.doubt import TABLE, USUAL
-from scripts.published import table
+from scripts.published import add_lines, json_lines, table
 from validation.calibration.calibrate import CachedSegments, Fit, InnerProduct, calibrated, minimise
 from validation.calibration.model_error import ModelError, machine_rise, model_error
 from validation.inference.evidence import log_evidence
@@ -59,17 +58,12 @@ def log_evidences(case: Case) -> dict[str, float]:
 def run(seeds: str, skip: int, count: int, kinds: Sequence[str], file: Path) -> None:
     """Sound machines that the file does not have yet, a line each."""
     file.parent.mkdir(parents=True, exist_ok=True)
-    done = {row["case"] for row in rows(file)}
+    done = {row["case"] for row in json_lines(file)}
     for label in plan(seeds, skip + count, ["nothing"], kinds)[skip:]:
         if label.case not in done:
             case = case_of(label.case, label.machine, records_of(label), edits_of(label))
             row = {"case": label.case, "kind": label.machine, "nats": log_evidences(case)}
-            with file.open("a") as f:
-                f.write(json.dumps(row) + "\n")
-
-
-def rows(file: Path) -> list[dict[str, Any]]:
-    return [json.loads(line) for line in file.read_text().splitlines()] if file.exists() else []
+            add_lines(file, row)
 
 
 def mean_cost(cases: Sequence[Mapping[str, Any]], share: float) -> float:

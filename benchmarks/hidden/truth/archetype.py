@@ -53,6 +53,25 @@ class Hidden:
     least: float = 0.0
 
 
+# A kind in our words -> what the catalogue calls it; a kind that is not here has the catalogue's own.
+CATALOGUE = {
+    "ac copper": ("copper.ac",),
+    "blocked nozzles": ("nozzles",),
+    "cover": ("blockage",),
+    "draught": ("convection.constant",),
+    "dust": ("fouling",),
+    "friction": ("bearing.friction",),
+    "harmonics": ("loss.winding",),
+    "heat": ("loss.constant",),
+    "inverter iron": ("iron.pwm",),
+    "lamp": ("loss.constant",),
+    "load loss": ("loss.rotor.load",),
+    "meter": ("input.factor",),
+    "road wind": ("convection",),
+    "shaft fan": ("convection.fan", "convection.rotation"),
+}
+
+
 def no_tempco(loss: str) -> tuple[Edit, ...]:
     """The user's network has a loss of copper that does not follow its temperature."""
     return ((("losses", loss, "alpha_1_K"), 0.0),)
@@ -66,7 +85,7 @@ class Archetype:
     missing : effects that can be hidden;  passing : those that can hold in one test or for a while
     foreign, faults, absorbed : (label, change from a seed) of the other classes;  tense : priors that can be wrong
     parts : the user's nodes and the bodies they stand for;  called : internal name of a place or input -> the user's
-    words : a hidden name of ours -> the names in the catalogue that are right
+    words : a hidden name of ours -> the names in the catalogue that are right, where CATALOGUE does not say so
     spans : the user's nodes that stand for a piece of their body, and from where to where (0 to 1) it reaches
     """
 
@@ -88,6 +107,12 @@ class Archetype:
     called: Mapping[str, str] = field(default_factory=dict)
     words: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
     spans: Mapping[str, tuple[float, float]] = field(default_factory=dict)
+
+    def right(self, name: str) -> tuple[str, ...]:
+        """The catalogue's names of a hidden effect, at the user's name of its place."""
+        kind, _, place = name.partition("@")
+        usual = tuple(f"{word}@{self.called.get(place, place)}" for word in CATALOGUE.get(kind, ()))
+        return self.words.get(name) or usual or (name,)
 
     def build(self, d: Draw, change: Change) -> Machine:
         """The machine of one draw with what is hidden in it."""

@@ -11,6 +11,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from functools import reduce
 from itertools import combinations, product
 from typing import Any
 
@@ -86,14 +87,8 @@ def _times(a: str, b: str) -> str:
 
 def _defining(words: Sequence[str]) -> tuple[str, ...]:
     """All products of the generators' words."""
-    out: list[str] = []
-    for n in range(1, len(words) + 1):
-        for some in combinations(words, n):
-            word = ""
-            for w in some:
-                word = _times(word, w)
-            out.append(word)
-    return tuple(out)
+    subsets = (subset for n in range(1, len(words) + 1) for subset in combinations(words, n))
+    return tuple(reduce(_times, subset) for subset in subsets)
 
 
 @dataclass(frozen=True)

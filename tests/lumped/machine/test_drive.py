@@ -13,6 +13,12 @@ MACHINE = SeriesMachine.from_ratings(100e3, 1000.0, 220.0, 511.0)
 VEHICLE = Vehicle(mass=9000.0, wheel_radius=0.48, gear=4.52)
 
 
+def load_torque(vehicle, speed_mps, slope):
+    """At the motor shaft, steady (N m). Downhill the gear takes its loss off the drive."""
+    T = vehicle.wheel_torque(speed_mps, slope)
+    return np.where(T > 0.0, T / vehicle.efficiency, T * vehicle.efficiency)
+
+
 def test_ratings_give_the_published_constants():
     """Seed 0: L_af = 3.657 mH, R_a + R_f = 47.6 mOhm, loss 12.42 kW, back-EMF 195.7 V."""
     assert MACHINE.L_af == pytest.approx(3.657e-3, rel=2e-4)
@@ -36,7 +42,7 @@ def climb():
 
 def test_on_the_slope_the_machine_carries_the_load(climb):
     """40 km/h up 4 %: about 1000 1/min, torque = load, V = R I + w L_af I."""
-    load = VEHICLE.load_torque(40 / 3.6, 0.04)
+    load = load_torque(VEHICLE, 40 / 3.6, 0.04)
     assert climb.vehicle_speed_mps[-1] == pytest.approx(40 / 3.6, rel=1e-3)
     assert climb.speed_rpm[-1] == pytest.approx(1000.0, rel=0.02)
     assert climb.torque_Nm[-1] == pytest.approx(load, rel=5e-3)
@@ -51,7 +57,7 @@ def test_limits_are_kept(climb):
 def test_shaft_work_is_kinetic_energy_and_load(climb):
     """L_af I^2 w over the ramp, from the mean-square current that heats the machine; 1 % for the 1 s sampling."""
     omega = climb.speed_rpm * np.pi / 30
-    load = VEHICLE.load_torque(climb.vehicle_speed_mps, 0.04)
+    load = load_torque(VEHICLE, climb.vehicle_speed_mps, 0.04)
     needed = 0.5 * (MACHINE.J + VEHICLE.inertia()) * omega[-1] ** 2 + np.trapezoid(load * omega, climb.time)
     given = np.sum(MACHINE.torque(climb.current_A)[1:] * 0.5 * (omega[1:] + omega[:-1]))
     assert given == pytest.approx(needed, rel=0.01)
@@ -70,7 +76,7 @@ def stop_and_go(vehicle):
     wanted = np.interp(time % 100, [0, 5, 25, 55, 65, 100], [0, 0, 1, 1, 0, 0]) * 40 / 3.6
     course = drive_cycle(MACHINE, vehicle, Controller(), time, wanted, np.zeros(time.size))
     gathers = (MACHINE.J + vehicle.inertia()) * np.gradient(wanted, time) * vehicle.gear / vehicle.wheel_radius
-    torque = np.where(wanted > 0, vehicle.load_torque(wanted, 0.0), 0.0) + gathers
+    torque = np.where(wanted > 0, load_torque(vehicle, wanted, 0.0), 0.0) + gathers
     driven = np.where(torque > 0, torque, vehicle.regeneration * -torque)
     return time, wanted, course, np.sqrt(np.mean(np.minimum(driven / MACHINE.L_af, 511.0**2)))
 
@@ -89,7 +95,7 @@ def test_energy_from_the_supply_is_copper_brakes_and_load(share):
     """At rest at both ends; 0.1 % for the 0.5 s at which the load is sampled."""
     vehicle = replace(VEHICLE, regeneration=share)
     time, _, course, _ = stop_and_go(vehicle)
-    load = np.trapezoid(vehicle.load_torque(course.vehicle_speed_mps, 0.0) * course.speed_rpm * np.pi / 30, time)
+    load = np.trapezoid(load_torque(vehicle, course.vehicle_speed_mps, 0.0) * course.speed_rpm * np.pi / 30, time)
     step = np.diff(time)
     spent = step @ (MACHINE.R * course.current_A**2 + course.brake_W)[1:] + load
     assert step @ course.electrical_W[1:] == pytest.approx(spent, rel=1e-3)

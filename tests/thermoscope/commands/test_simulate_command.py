@@ -153,7 +153,8 @@ def test_a_vehicle_on_a_slope_heats_its_machine(case, tmp_path):
     with open(run["file"]) as file:
         head = file.readline().strip().split(",")
     last = dict(zip(head, np.loadtxt(run["file"], delimiter=",", skiprows=1)[-1], strict=True))
-    load = Vehicle(9000.0, 0.48, 4.52).load_torque(40 / 3.6, 0.002)
+    vehicle = Vehicle(9000.0, 0.48, 4.52)
+    load = vehicle.wheel_torque(40 / 3.6, 0.002) / vehicle.efficiency
     assert last["torque_Nm"] == pytest.approx(load, rel=0.01)
     assert last["speed_rpm"] == pytest.approx(1000.0, rel=0.02)
     assert last["ambient"] == pytest.approx(21.0)

@@ -252,9 +252,5 @@ BRUSHED = Archetype(
         Hidden("cover@yoke", lambda a: covered(("frame",), a), 0.9),
         Hidden("meter@current_A", lambda a: less("current_A", a), 0.5, least=METER),
     ),
-    words={
-        "fan slower@air": ("flow@stream.fan", "flow@fan.flow", "input.factor@fan_flow_m3h"),
-        "cover@yoke": ("blockage@yoke",),
-        "meter@current_A": ("input.factor@current_A",),
-    },
+    words={"fan slower@air": ("flow@stream.fan", "flow@fan.flow", "input.factor@fan_flow_m3h")},
 )

@@ -251,18 +251,11 @@ CRANE = Archetype(
     logger=Logger(30.0, 5.0, 0.1, (10.0, 30.0), 0.1),
     called=CALLED,
     words={
-        "draught@frame": ("convection.constant@frame",),
-        "shaft fan@shield.de": ("convection.fan@front", "convection.rotation@front"),
         "coupling heat@bearing.de": ("conduction.shaft@front bearing", "conduction.shaft@rotor"),
         "windage@cage": ("windage@cage", "windage@rotor"),
         "friction@bearing.fan": ("bearing.friction@rear bearing", "loss.factor@loss:rear grease"),
-        "ac copper@slot": ("copper.ac@winding",),
-        "load loss@cage": ("loss.rotor.load@cage",),
         "pulses@cage": ("iron.pwm@cage", "iron.pwm@rotor"),
         "no tempco@slot": ("copper.feedback@copper",),
-        "heat@shield.de": ("loss.constant@front",),
-        "cover@frame": ("blockage@frame",),
         "blower slower@frame": ("input.factor@blower_on",),
-        "meter@current_A": ("input.factor@current_A",),
     },
 )

@@ -298,17 +298,10 @@ HAIRPIN = Archetype(
     logger=Logger(20.0, 5.0, 0.1, (2.0, 12.0), 0.08),
     called=CALLED,
     words={
-        "road wind@housing": ("convection@housing",),
         "draught@rear": ("convection.constant@rear cover",),
         "load loss@magnets": ("loss.rotor.load@rotor",),
-        "ac copper@layer.4": ("copper.ac@layer 4",),
         "loop currents@layer.1": ("loss.winding@layer 1", "loss.factor@loss:copper 1"),
         "terminals@weld": ("coupling@weld side|housing", "coupling@housing|weld side"),
-        "blocked nozzles@weld": ("nozzles@weld side",),
-        "heat@front": ("loss.constant@front cover",),
-        "draught@housing": ("convection.constant@housing",),
         "pump@oil": ("flow@circuit.spray", "input.factor@flow_l_min"),
-        "cover@housing": ("blockage@housing",),
-        "meter@current_A": ("input.factor@current_A",),
     },
 )

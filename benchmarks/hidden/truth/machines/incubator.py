@@ -179,16 +179,12 @@ INCUBATOR = Archetype(
     logger=Logger(20.0, 10.0, 0.25, (2.0, 20.0), 0.15),
     called={"air": "chamber", "outer": "shell"},
     words={
-        "draught@outer": ("convection.constant@shell",),
         "leak@air": ("convection.constant@chamber", "convection.buoyant@chamber", "heat@chamber"),
         "lid open@air": ("convection.constant@chamber", "convection.buoyant@chamber", "heat@chamber"),
-        "lamp@outer": ("loss.constant@shell",),
         "bridge@plate-outer": ("coupling@plate|shell",),
         "sleeve@lid": ("convection.buoyant@lid", "convection.constant@lid"),
         "bridge@plate-rack": ("coupling@plate|rack",),
         "second heater@rack": ("loss.constant@rack", "heat@rack"),
         "stirrer slower@air": ("input.factor@fan_on",),
-        "cover@outer": ("blockage@shell",),
-        "meter@heater_on": ("input.factor@heater_on",),
     },
 )

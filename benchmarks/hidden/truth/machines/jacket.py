@@ -269,9 +269,5 @@ JACKET = Archetype(
         Hidden("cover@housing", lambda a: covered(("drum",), a), 0.9),
         Hidden("meter@current_A", lambda a: less("current_A", a), 0.5, least=METER),
     ),
-    words={
-        "pump@coolant": ("flow@stream.coolant", "input.factor@flow_l_min"),
-        "cover@housing": ("blockage@housing",),
-        "meter@current_A": ("input.factor@current_A",),
-    },
+    words={"pump@coolant": ("flow@stream.coolant", "input.factor@flow_l_min")},
 )

@@ -147,17 +147,10 @@ SERVO = Archetype(
     logger=Logger(10.0, 5.0, 0.1, (2.0, 10.0)),
     called={"copper": "Wicklung", "case": "Gehaeuse", "ambient": "Umgebung"},
     words={
-        "draught@case": ("convection.constant@Gehaeuse",),
-        "shaft fan@case": ("convection.fan@Gehaeuse", "convection.rotation@Gehaeuse"),
         "coupling heat@rotor": ("conduction.shaft@Rotor",),
         "windage@rotor": ("windage@Rotor",),
         # that the declared friction is a factor too small is the same heat by the same law at the same node
         "bearing friction@rotor": ("bearing.friction@Rotor", "bearing.friction@Gehaeuse", "loss.factor@loss:Lager"),
-        "ac copper@copper": ("copper.ac@Wicklung",),
-        "inverter iron@case": ("iron.pwm@Gehaeuse",),
         "no tempco@copper": ("copper.feedback@Kupfer",),
-        "heat@case": ("loss.constant@Gehaeuse",),
-        "cover@case": ("blockage@Gehaeuse",),
-        "meter@current_A": ("input.factor@current_A",),
     },
 )

@@ -248,5 +248,4 @@ TEFC = Archetype(
         Hidden("cover@housing", lambda a: covered(("fins",), a), 0.9),
         Hidden("meter@current_A", lambda a: less("current_A", a), 0.5, least=METER),
     ),
-    words={"cover@housing": ("blockage@housing",), "meter@current_A": ("input.factor@current_A",)},
 )

@@ -218,16 +218,9 @@ TRANSFORMER = Archetype(
     logger=Logger(60.0, 10.0, 0.1, (15.0, 60.0), 0.1),
     called=CALLED,
     words={
-        "draught@hv.outer": ("convection.constant@HV outer",),
         "cable@lv.outer": ("conduction.cable@LV outer", "convection.constant@LV outer"),
-        "lamp@clamp": ("loss.constant@clamp",),
-        "harmonics@hv.mid": ("loss.winding@HV middle",),
-        "harmonics@lv.outer": ("loss.winding@LV outer",),
         "bridge@clamp-lv.outer": ("coupling@clamp|LV outer", "coupling@LV outer|clamp"),
-        "dust@hv.outer": ("fouling@HV outer",),
         "no tempco@lv": ("copper.feedback@low",),
-        "cover@hv.outer": ("blockage@HV outer",),
         "stage slower@ducts": ("input.factor@stage1_on",),
-        "meter@current_A": ("input.factor@current_A",),
     },
 )

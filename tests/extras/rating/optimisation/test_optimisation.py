@@ -241,7 +241,7 @@ def test_a_cycle_at_constant_speed_takes_the_current_of_its_torque():
     wanted = np.minimum(time / 30.0, 1.0) * 40.0 / 3.6
     cycle = Driven(machine, vehicle, Controller(), time, wanted, np.full(time.size, 0.04))
     inputs, lag = cycle.inputs({})
-    steady = machine.current(vehicle.load_torque(40.0 / 3.6, 0.04))
+    steady = machine.current(vehicle.wheel_torque(40.0 / 3.6, 0.04) / vehicle.efficiency)
     assert_allclose(inputs["current_A"], steady, rtol=0.02)
     assert_allclose(inputs["speed_rpm"], 40.0 / 3.6 / vehicle.wheel_radius * vehicle.gear * 30 / np.pi, rtol=0.02)
     assert max(lag.values()) < 0.0
