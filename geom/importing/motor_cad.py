@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import cmath
 import math
+import re
 import tomllib
 from collections.abc import Callable
 from dataclasses import dataclass, field
@@ -25,6 +26,8 @@ LITRES_PER_MIN = 6e4  # in m3/s
 COOLANTS = {"egw 50/50": "glycol-50", "water": "water", "pgw 50/50": "propylene-glycol-50"}
 BARS = {"2": "between parallel teeth", "4": "round at both ends"}  # of the cage's upper bars, by Top_Bar_Type
 HOME = {"Shaft_Speed": "Miscellaneous"}  # of keys that several sections have, the one that counts
+SLICE = re.compile(r" *\(C\d+\)$")  # at the end of a node's name
+COLDEST, HOTTEST = -60.0, 130.0  # degC, of air and coolant
 # What keys of a file are here.
 _KEYS = tomllib.loads(Path(__file__).with_name("motor_cad.toml").read_text("utf-8"))
 
@@ -467,7 +470,9 @@ def _cooling(draft: Draft, file: File) -> None:
     flow = round(LITRES_PER_MIN * file.number("WJ_Fluid_Volume_Flow_Rate", 0.0, 1.0), 6)
     draft.take("cooling", "WJ_Fluid_Volume_Flow_Rate in m3/s", flow_L_per_min=flow)
     draft.take(
-        "cooling", "HousingWJ_Inlet_Temperature", inlet_C=file.number("HousingWJ_Inlet_Temperature", -60, 130, 20)
+        "cooling",
+        "HousingWJ_Inlet_Temperature",
+        inlet_C=file.number("HousingWJ_Inlet_Temperature", COLDEST, HOTTEST, 20),
     )
     draft.assume("cooling", "one way through", jacket={"inlet": "jacket.inlet", "outlet": "jacket.outlet"})
 
@@ -530,8 +535,14 @@ def _left(draft: Draft, file: File) -> None:
         legend = file.text(f"Temperature_Validation_Legend[{k}]")
         if legend:
             value = file.number(f"Temperature_Validation_Temperature[{k}]", -273.15, 2000)
-            draft.readings[one_line(legend)[:80]] = value
+            name = one_line(legend)[:80]
+            draft.readings[name] = value
+            if place := _KEYS["temperatures"].get(SLICE.sub("", name)):
+                draft.places[name] = place
             draft.leave(f"Temperature_Validation [{legend}]", value, "degC, stored: a steady state to compare with")
+    for key, boundary in _KEYS["surroundings"].items():
+        if file.text(key):
+            draft.surroundings[boundary] = file.number(key, COLDEST, HOTTEST)
 
 
 def _zero(text: str) -> bool:
