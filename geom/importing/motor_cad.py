@@ -317,9 +317,19 @@ def _u_layers(file: File, place: Place) -> list[tuple[Loop, list[Loop]]]:
 
 def _rotor(draft: Draft, file: File) -> None:
     poles = file.count("Pole_Number")
-    place = Place(file.length("Stator_Bore") / 2 - file.length("Airgap"), -1, math.pi / poles)
+    band = file.number("Banding_Thickness", 0.0, 100.0, 0.0)
+    radius = file.length("Stator_Bore") / 2 - file.length("Airgap") - METRES * band
+    if radius <= 0:
+        raise InputError(f"Banding_Thickness = {band:g} leaves no rotor", f"{file.path} [Dimensions]", "less")
+    place = Place(radius, -1, math.pi / poles)
     rotor_kind = _cage_rotor if file.text("Motor_Type") == "IM" else ROTORS[file.choice("BPM_Rotor", ROTORS)]
     rotor_kind(draft, file, place, poles)
+    if band:
+        draft.take("geometry.rotor", "Banding_Thickness, under the gap of Airgap", sleeve_mm=band)
+        under = "magnets" if draft.value("geometry.rotor", "core_diameter_mm") else "rotor.core"
+        gap = file.number("Banding_-_Rotor", 0.0, 10.0, 0.0)
+        if gap:
+            draft.take("contacts", "Banding_-_Rotor, mm of air", **{f"{under}|rotor.sleeve": {"gap_mm": gap}})
     draft.take("geometry.shaft", "Shaft_Dia", diameter_mm=file.number("Shaft_Dia"))
     stator, rotor = file.number("Stator_Lam_Length"), file.number("Rotor_Lam_Length", usual=0.0)
     if rotor and abs(rotor - stator) > 1e-3:
@@ -360,7 +370,11 @@ def _surface_rotor(draft: Draft, file: File, place: Place, poles: int) -> None:
         wide, kind = 2 * place.radius * math.sin(angle / 2), "SlotM15"
         sizes |= {"Wmag": wide, "W0": 2 * math.asin(wide / 2 / core.radius), "Rtopm": place.radius}
     draft.draw("magnets", "Magnet_Thickness, Magnet_Arc_[ED]", poles, magnet_of(kind, core, sizes).filled)
-    draft.take("geometry.rotor", "Stator_Bore, Airgap, Magnet_Thickness", core_diameter_mm=in_mm(2 * core.radius))
+    draft.take(
+        "geometry.rotor",
+        "Stator_Bore, Airgap, Banding_Thickness, Magnet_Thickness",
+        core_diameter_mm=in_mm(2 * core.radius),
+    )
 
 
 def _bar(file: File, place: Place) -> Slot:
