@@ -185,10 +185,13 @@ def _fluids(g: Geometry, at: _Places) -> tuple[Part, ...]:
         gap.append((shapes.ring(at.valley, at.rotor), at.iron0, at.iron1))
     # Is there a hole through the iron, or room under a sleeve, that no magnet fills?
     outlines = at.outlines
-    holes, magnets = (sum(p.area for p in _around(groups)) for groups in (outlines["pockets"], outlines["magnets"]))
+    holes, magnets, *others = (
+        sum(p.area for p in _around(outlines[name])) for name in ("pockets", "magnets", "bars", "coils")
+    )
     buried = max(radii(outlines["magnets"]), default=0.0) < at.surface
-    under = math.pi * (at.shell**2 - at.surface**2) - (0.0 if buried else magnets)
-    covered = bool(g.rotor.sleeve) and (bool(outlines["notches"]) or under > 1e-7)
+    iron = Profile(notched_loop(at.surface, outlines["notches"])).area - holes
+    under = math.pi * at.shell**2 - iron - magnets - sum(others)
+    covered = bool(g.rotor.sleeve) and under > 1e-7
     return (
         fluid("airgap", *gap, role=Role.AIR_GAP),
         fluid("air.left", (whole, at.cap0, max(at.core0, at.iron0))),

@@ -27,7 +27,8 @@ COOLANTS = {"egw 50/50": "glycol-50", "water": "water", "pgw 50/50": "propylene-
 BARS = {"2": "between parallel teeth", "4": "round at both ends"}  # of the cage's upper bars, by Top_Bar_Type
 HOME = {"Shaft_Speed": "Miscellaneous"}  # of keys that several sections have, the one that counts
 SLICE = re.compile(r" *\(C\d+\)$")  # at the end of a node's name
-COLDEST, HOTTEST = -60.0, 130.0  # degC, of air and coolant
+COLDEST, HOTTEST = -60.0, 130.0  # degC, of a coolant
+HOT_ROOM = 300.0  # degC, of what surrounds a machine: ovens too
 # What keys of a file are here.
 _KEYS = tomllib.loads(Path(__file__).with_name("motor_cad.toml").read_text("utf-8"))
 
@@ -319,7 +320,7 @@ def _rotor(draft: Draft, file: File) -> None:
     poles = file.count("Pole_Number")
     band = file.number("Banding_Thickness", 0.0, 100.0, 0.0)
     radius = file.length("Stator_Bore") / 2 - file.length("Airgap") - METRES * band
-    if radius <= 0:
+    if band and radius <= 0:
         raise InputError(f"Banding_Thickness = {band:g} leaves no rotor", f"{file.path} [Dimensions]", "less")
     place = Place(radius, -1, math.pi / poles)
     rotor_kind = _cage_rotor if file.text("Motor_Type") == "IM" else ROTORS[file.choice("BPM_Rotor", ROTORS)]
@@ -556,7 +557,7 @@ def _left(draft: Draft, file: File) -> None:
             draft.leave(f"Temperature_Validation [{legend}]", value, "degC, stored: a steady state to compare with")
     for key, boundary in _KEYS["surroundings"].items():
         if file.text(key):
-            draft.surroundings[boundary] = file.number(key, COLDEST, HOTTEST)
+            draft.surroundings[boundary] = file.number(key, COLDEST, HOT_ROOM)
 
 
 def _zero(text: str) -> bool:

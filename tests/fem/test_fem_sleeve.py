@@ -66,6 +66,23 @@ def test_a_banding_over_surface_magnets_is_read(tmp_path):
     assert "air.inside" in {fluid.name for fluid in machine.fluids}  # between the magnets, under the sleeve
 
 
+def test_no_air_lies_under_a_sleeve_that_all_touches():
+    """Magnets flush in their notches leave none; the notches alone do."""
+    half, low, top = 10.0, 77.0, math.sqrt(82.0**2 - 10.0**2)  # mm; the sleeve begins at 82
+    path = [[top, -half], [low, -half], [low, half], [top, half]]
+    bulge = math.tan(math.asin(half / 82.0) / 2)
+    flush = [[top, -half, bulge], [top, half], [low, half], [low, -half]]
+    notches, magnets = ([{"copies": 4, "loops_mm": [loop]}] for loop in (path, flush))
+    geometry = {"stator": {"slots": 9}, "rotor": {"sleeve_mm": 4.0}}
+    for outlines, air in (({}, False), ({"notches": notches}, True), ({"notches": notches, "magnets": magnets}, False)):
+        machine = machine_from(
+            {"machine": {"family": "cross-section"}, "geometry": geometry, "outlines": outlines}, "sleeve.toml"
+        )
+        mesh = build_mesh(machine, size_m=0.05, segments=48)
+        assert ("air.inside" in {fluid.name for fluid in machine.fluids}) == air
+        assert ("rotor.sleeve.air.inside" in mesh.patches) == air
+
+
 def test_in_the_network_a_sleeve_of_titanium_leaves_magnets_cooler(tmp_path):
     """The network has it as a part that turns, with its contact and its film. Some heat of the magnets leaves through
     it, and none may cost more than all of it would in the shell over the magnets' arc."""
