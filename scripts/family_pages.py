@@ -60,7 +60,8 @@ TRUST = {  # family -> what is exact, what is assumed, what it was held against
     "cross-section": (
         f"{EVERY}; arcs as they are drawn, in the mesh as chords",
         "frame, end turns, contacts and losses where a drawing or another program's file has none",
-        "closed forms of slots, magnets and holes; [machines that come with pyleecan](../how-to/import.md#pyleecan)",
+        "closed forms of slots, magnets and holes; a sleeve as a cylindrical shell (0.06 %); "
+        "[machines that come with pyleecan](../how-to/import.md#pyleecan)",
     ),
 }
 

@@ -30,17 +30,6 @@ from lumped.machine.motor import rated_inputs
 from lumped.model.network import Network
 from scripts.published import ROOT, publish, table
 
-PLACES = {  # name of a stored temperature -> where the network has it; mean over several
-    "Housing [Active]": ("housing",),
-    "Housing Water Jacket [A]": ("jacket.wall@0", "jacket.wall@1"),
-    "Stator Back Iron": ("stator.core",),
-    "Stator Tooth (C1)": ("stator.core.gap",),
-    "Wedge (C1)": ("winding.gap",),
-    "Wdg (Average) (C1)": ("winding",),
-    "Winding (Avg)": ("winding.copper",),
-    "Rotor Lam [F]": ("rotor.core",),
-    "Shaft [Active]": ("shaft",),
-}
 HEATED = ("winding.copper", "stator.core", "rotor.core", "magnets", "bearing.left", "bearing.right")
 BEGIN_W, LEAST_W, MOST_W = 100.0, 1e-3, 1e4  # of a loss
 MOST = 20.0  # times a film or contact: as far as correlations and interfaces of machines may be off
@@ -48,8 +37,12 @@ PAGE = ROOT / "docs" / "how-to" / "import.md"
 NAMES = 3  # films or contacts that are told
 
 
-def network_of(draft: Draft) -> tuple[Network, dict[str, float], dict[str, float]]:
-    """The network with a loss of 1 W at every place that may be heated; its inputs; its boundaries (degC)."""
+Model = tuple[Network, dict[str, float], dict[str, float], list[list[str]]]
+
+
+def network_of(draft: Draft) -> Model:
+    """The network with a loss of 1 W at every place that may be heated; its inputs; its boundaries (degC); where it
+    has each stored temperature, as the mean over several places."""
     sections = draft.sections()
     sections["losses"] = {f"at-{k}": {"kind": "stray", "at": at, "P_W": 1.0} for k, at in enumerate(HEATED)}
     machine = machine_from(sections, draft.name)
@@ -60,22 +53,30 @@ def network_of(draft: Draft) -> tuple[Network, dict[str, float], dict[str, float
         replace(network, parameters=wide),
         dict(rated_inputs(machine)),
         {"ambient": draft.readings["Ambient"], "coolant": cooling["inlet_C"]},
+        [[p for p in network.places if p.partition("@")[0] == place] for place in stored_places(draft).values()],
     )
 
 
+def stored_places(draft: Draft) -> dict[str, str]:
+    """Stored temperature -> where the network has it, without those around the machine."""
+    return {name: place for name, place in draft.places.items() if place not in draft.surroundings}
+
+
 def rises(
-    network: Network, inputs: Mapping[str, float], boundaries: Mapping[str, float], values: Mapping[str, float]
+    network: Network,
+    inputs: Mapping[str, float],
+    boundaries: Mapping[str, float],
+    places: Sequence[Sequence[str]],
+    values: Mapping[str, float],
 ) -> Array:
     """Rises (K) over the coolant's inlet at the places of the stored temperatures."""
-    rows = [network.places[place].mean for places in PLACES.values() for place in places]
-    y, count = list(steady(network, inputs, boundaries, values, rows).y), [len(places) for places in PLACES.values()]
-    means = [np.mean([y.pop(0) for _ in range(n)]) for n in count]
+    rows = [network.places[place].mean for each in places for place in each]
+    y = list(steady(network, inputs, boundaries, values, rows).y)
+    means = [np.mean([y.pop(0) for _ in each]) for each in places]
     return np.array(means) - boundaries["coolant"]
 
 
-def nearest_losses(
-    model: tuple[Network, dict[str, float], dict[str, float]], stored: Array, free: Sequence[str] = ()
-) -> tuple[dict[str, float], Array]:
+def nearest_losses(model: Model, stored: Array, free: Sequence[str] = ()) -> tuple[dict[str, float], Array]:
     """Losses (W), and factors of what is free besides, that come nearest to the stored rises; ours over these."""
     names = [*(f"loss.at-{k}" for k in range(len(HEATED))), *free]
     start = np.log([*(BEGIN_W for _ in HEATED), *(1.0 for _ in free)])
@@ -102,11 +103,12 @@ def measured(path: Path) -> dict[str, Any]:
     draft = import_draft(path)
     model, readings = network_of(draft), draft.readings
     inlet = model[2]["coolant"]
-    stored = np.array([readings[name] for name in PLACES]) - inlet
+    names = stored_places(draft)
+    stored = np.array([readings[name] for name in names]) - inlet
     losses, ratio = nearest_losses(model, stored)
     rows = [
         {"place": name, "stored_K": float(s), "ratio": float(r)}
-        for name, s, r in zip(PLACES, stored, ratio, strict=True)
+        for name, s, r in zip(names, stored, ratio, strict=True)
     ]
     one_free: list[tuple[float, str, float]] = []
     for p in model[0].parameters:

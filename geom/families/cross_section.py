@@ -6,6 +6,7 @@ has tapered slots and the rotor is plain iron.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator
 from dataclasses import replace
 
@@ -37,11 +38,16 @@ NAMES = {
     "bars": "of the cage",
     "coils": "of a wound rotor",
 }
-rotor = Measure("the bore less the gap on either side", lambda g: g.stator.bore_diameter - 2 * g.stator.air_gap)
+gap = Measure("shaft to air gap", lambda g: g.stator.bore_diameter / 2 - g.stator.air_gap - g.shaft.diameter / 2)
+rotor = Measure(
+    "the bore less gap and sleeve on either side",
+    lambda g: g.stator.bore_diameter - 2 * (g.stator.air_gap + g.rotor.sleeve),
+)
 inside = Measure("shaft to rotor surface", lambda g: rotor.span(g) / 2 - g.shaft.diameter / 2)
 PARAMETERS = (
     *(replace(p, low=0.005, high=0.95) if p.key in FILLS else p for p in parameters.COMMON),
-    mm("rotor.core_diameter", 0, 5, 3000, rotor(0.8, 1.0), "iron of the rotor; 0: up to the air gap", off=True),
+    mm("rotor.sleeve", 0, 0.1, 100, gap(0.02, 0.2), "around magnets and iron, under the air gap; 0: none", off=True),
+    mm("rotor.core_diameter", 0, 5, 3000, rotor(0.8, 1.0), "iron of the rotor; 0: up to gap or sleeve", off=True),
     mm("rotor.stack_length", 0, 5, 3000, parameters.stack(0.8, 1.0), "of the rotor; 0: as the stator's", off=True),
     choice("rotor.inside", ("bored", "solid"), "laminations around the shaft, or to the axis between two stubs of it"),
     mm("rotor.end", 5, 0.5, 300, parameters.end_space(0.1, 0.6), "rings of the cage, or end turns of a wound rotor"),
@@ -58,7 +64,8 @@ class _Places(Layout):
         super().__init__(g)
         outlines: Outlines = getattr(g, "outlines", None) or {name: () for name in NAMES}
         self.outlines = outlines
-        self.surface = g.rotor.core_diameter / 2 or self.rotor
+        self.shell = self.rotor - g.rotor.sleeve
+        self.surface = g.rotor.core_diameter / 2 or self.shell
         stack = g.rotor.stack_length or g.stator.stack_length
         self.iron0, self.iron1 = self.middle - stack / 2, self.middle + stack / 2
         if outlines["wires"]:
@@ -78,7 +85,8 @@ def build_section(g: Geometry) -> tuple[Part, ...]:
 def _check(g: Geometry, at: _Places) -> None:
     fit, outlines = Fit(g), at.outlines
     check(g, at, outlined=bool(outlines["slots"] or outlines["wires"]))
-    fit.need(at.surface <= at.rotor + 1e-9, "rotor.core_diameter", f"at most {2e3 * at.rotor:.5g}, to leave the gap")
+    right = f"at most {2e3 * at.shell:.5g}, to leave gap and sleeve"
+    fit.need(at.surface <= at.shell + 1e-9, "rotor.core_diameter", right)
     fit.need(g.shaft.diameter / 2 < at.valley, "shaft.diameter", f"less than {2e3 * at.valley:.5g} mm, the rotor")
     room = min(at.iron0 - at.cap0, at.cap1 - at.iron1)
     fit.need(room > 0.0, "rotor.stack_length", "less, to clear the end-caps")
@@ -93,7 +101,8 @@ def _check(g: Geometry, at: _Places) -> None:
     _inside(outlines, ("slots", "wires", "vents"), (0.999 * at.bore, at.core), "the laminations")
     shaft = g.shaft.diameter / 2 if g.rotor.inside == "bored" else 0.0
     _inside(outlines, ("pockets", "bars", "coils", "notches"), (shaft, at.surface + 1e-7), "the rotor")
-    _inside(outlines, ("magnets",), (shaft, at.bore), "the bore")
+    most, what = (at.shell + 1e-7, "the sleeve") if g.rotor.sleeve else (at.bore, "the bore")
+    _inside(outlines, ("magnets",), (shaft, most), what)
 
 
 def _inside(outlines: Outlines, names: tuple[str, ...], span: tuple[float, float], what: str) -> None:
@@ -130,6 +139,10 @@ def _rotor(g: Geometry, at: _Places) -> Iterator[Part]:
     if outlines["magnets"]:
         prisms = extrude(_around(outlines["magnets"]), at.iron0, at.iron1)
         yield Part("magnets", "magnet-ndfeb", prisms, role=Role.MAGNET)
+    if g.rotor.sleeve:
+        prism = shapes.ring(at.shell, at.rotor), at.iron0, at.iron1
+        # It holds the magnets and carries no field: for losses of iron it is insulation that turns.
+        yield Part("rotor.sleeve", "carbon-fibre", (prism,), role=Role.INSULATION, turns=True)
     if bars := extrude(_around(outlines["bars"]), at.iron0, at.iron1):
         top = max(radii(outlines["bars"]))
         ring = shapes.ring(top - g.rotor.ring, top)
@@ -164,21 +177,27 @@ def _stator(g: Geometry, at: _Places) -> tuple[Part, ...]:
 
 
 def _fluids(g: Geometry, at: _Places) -> tuple[Part, ...]:
-    """Holes through the iron have air of their own; the gap takes what slots and the rotor's surface leave."""
+    """Holes through the iron and room under a sleeve have air of their own; the gap takes what slots and the rotor's
+    surface leave."""
     whole, low, high = shapes.disc(at.core), min(at.core0, at.iron0), max(at.core1, at.iron1)
     gap = [(shapes.ring(at.rotor, at.mouth), low, high)]
-    if at.valley < at.rotor:
+    if at.valley < at.rotor and not g.rotor.sleeve:
         gap.append((shapes.ring(at.valley, at.rotor), at.iron0, at.iron1))
-    # Is there a hole through the iron that no magnet fills?
+    # Is there a hole through the iron, or room under a sleeve, that no magnet fills?
     outlines = at.outlines
-    holes, magnets = (sum(p.area for p in _around(groups)) for groups in (outlines["pockets"], outlines["magnets"]))
+    holes, magnets, *others = (
+        sum(p.area for p in _around(outlines[name])) for name in ("pockets", "magnets", "bars", "coils")
+    )
     buried = max(radii(outlines["magnets"]), default=0.0) < at.surface
+    iron = Profile(notched_loop(at.surface, outlines["notches"])).area - holes
+    under = math.pi * at.shell**2 - iron - magnets - sum(others)
+    covered = bool(g.rotor.sleeve) and under > 1e-7
     return (
         fluid("airgap", *gap, role=Role.AIR_GAP),
         fluid("air.left", (whole, at.cap0, max(at.core0, at.iron0))),
         fluid("air.right", (whole, min(at.core1, at.iron1), at.cap1)),
         *coolant(g, at),
-        *([fluid("air.inside")] if (bool(outlines["vents"]) or holes > magnets * buried + 1e-7) else []),
+        *([fluid("air.inside")] if (bool(outlines["vents"]) or covered or holes > magnets * buried + 1e-7) else []),
     )
 
 

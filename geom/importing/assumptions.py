@@ -79,8 +79,9 @@ def parts_of(draft: Draft) -> set[str]:
     always = {"stator.core", "rotor.core", "shaft", *windings(draft)}
     ends = {f"{part}.{end}" for part in ("bearing", "endcap") for end in ("left", "right")}
     some = {"magnets": "magnets", "bars": "rotor.cage", "coils": "winding.field"}
+    sleeve = {"rotor.sleeve"} if draft.value("geometry.rotor", "sleeve_mm") else set()
     housing = {"housing"} if draft.value("geometry.housing", "kind") != "none" else set()
-    return always | ends | housing | {part for name, part in some.items() if f"[outlines.{name}]" in sections}
+    return always | ends | housing | sleeve | {part for name, part in some.items() if f"[outlines.{name}]" in sections}
 
 
 def losses(draft: Draft, copper_mm2: float, length_m: float, parallel: float, iron_kg: float, density: float) -> None:

@@ -40,13 +40,19 @@ class Entry:
 
 @dataclass
 class Draft:
-    """name : of the machine;  path : what it was read from;  readings : temperatures (degC) the other program stored"""
+    """name : of the machine;  path : what it was read from;  readings : temperatures (degC) the other program stored
+
+    places : reading -> where our network has it, of those whose names are understood
+    surroundings : boundary of our network -> degC, as the file has it
+    """
 
     name: str
     path: Path
     program: str
     entries: list[Entry] = field(default_factory=list)
     readings: dict[str, float] = field(default_factory=dict)
+    places: dict[str, str] = field(default_factory=dict)
+    surroundings: dict[str, float] = field(default_factory=dict)
 
     def take(self, section: str, source: str, **values: Any) -> None:
         """Values as the file has them, or as they follow from it.  source : its keys"""

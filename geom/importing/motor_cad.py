@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import cmath
 import math
+import re
 import tomllib
 from collections.abc import Callable
 from dataclasses import dataclass, field
@@ -25,6 +26,9 @@ LITRES_PER_MIN = 6e4  # in m3/s
 COOLANTS = {"egw 50/50": "glycol-50", "water": "water", "pgw 50/50": "propylene-glycol-50"}
 BARS = {"2": "between parallel teeth", "4": "round at both ends"}  # of the cage's upper bars, by Top_Bar_Type
 HOME = {"Shaft_Speed": "Miscellaneous"}  # of keys that several sections have, the one that counts
+SLICE = re.compile(r" *\(C\d+\)$")  # at the end of a node's name
+COLDEST, HOTTEST = -60.0, 130.0  # degC, of a coolant
+HOT_ROOM = 300.0  # degC, of what surrounds a machine: ovens too
 # What keys of a file are here.
 _KEYS = tomllib.loads(Path(__file__).with_name("motor_cad.toml").read_text("utf-8"))
 
@@ -314,9 +318,19 @@ def _u_layers(file: File, place: Place) -> list[tuple[Loop, list[Loop]]]:
 
 def _rotor(draft: Draft, file: File) -> None:
     poles = file.count("Pole_Number")
-    place = Place(file.length("Stator_Bore") / 2 - file.length("Airgap"), -1, math.pi / poles)
+    band = file.number("Banding_Thickness", 0.0, 100.0, 0.0)
+    radius = file.length("Stator_Bore") / 2 - file.length("Airgap") - METRES * band
+    if band and radius <= 0:
+        raise InputError(f"Banding_Thickness = {band:g} leaves no rotor", f"{file.path} [Dimensions]", "less")
+    place = Place(radius, -1, math.pi / poles)
     rotor_kind = _cage_rotor if file.text("Motor_Type") == "IM" else ROTORS[file.choice("BPM_Rotor", ROTORS)]
     rotor_kind(draft, file, place, poles)
+    if band:
+        draft.take("geometry.rotor", "Banding_Thickness, under the gap of Airgap", sleeve_mm=band)
+        under = "magnets" if draft.value("geometry.rotor", "core_diameter_mm") else "rotor.core"
+        gap = file.number("Banding_-_Rotor", 0.0, 10.0, 0.0)
+        if gap:
+            draft.take("contacts", "Banding_-_Rotor, mm of air", **{f"{under}|rotor.sleeve": {"gap_mm": gap}})
     draft.take("geometry.shaft", "Shaft_Dia", diameter_mm=file.number("Shaft_Dia"))
     stator, rotor = file.number("Stator_Lam_Length"), file.number("Rotor_Lam_Length", usual=0.0)
     if rotor and abs(rotor - stator) > 1e-3:
@@ -357,7 +371,11 @@ def _surface_rotor(draft: Draft, file: File, place: Place, poles: int) -> None:
         wide, kind = 2 * place.radius * math.sin(angle / 2), "SlotM15"
         sizes |= {"Wmag": wide, "W0": 2 * math.asin(wide / 2 / core.radius), "Rtopm": place.radius}
     draft.draw("magnets", "Magnet_Thickness, Magnet_Arc_[ED]", poles, magnet_of(kind, core, sizes).filled)
-    draft.take("geometry.rotor", "Stator_Bore, Airgap, Magnet_Thickness", core_diameter_mm=in_mm(2 * core.radius))
+    draft.take(
+        "geometry.rotor",
+        "Stator_Bore, Airgap, Banding_Thickness, Magnet_Thickness",
+        core_diameter_mm=in_mm(2 * core.radius),
+    )
 
 
 def _bar(file: File, place: Place) -> Slot:
@@ -467,7 +485,9 @@ def _cooling(draft: Draft, file: File) -> None:
     flow = round(LITRES_PER_MIN * file.number("WJ_Fluid_Volume_Flow_Rate", 0.0, 1.0), 6)
     draft.take("cooling", "WJ_Fluid_Volume_Flow_Rate in m3/s", flow_L_per_min=flow)
     draft.take(
-        "cooling", "HousingWJ_Inlet_Temperature", inlet_C=file.number("HousingWJ_Inlet_Temperature", -60, 130, 20)
+        "cooling",
+        "HousingWJ_Inlet_Temperature",
+        inlet_C=file.number("HousingWJ_Inlet_Temperature", COLDEST, HOTTEST, 20),
     )
     draft.assume("cooling", "one way through", jacket={"inlet": "jacket.inlet", "outlet": "jacket.outlet"})
 
@@ -530,8 +550,14 @@ def _left(draft: Draft, file: File) -> None:
         legend = file.text(f"Temperature_Validation_Legend[{k}]")
         if legend:
             value = file.number(f"Temperature_Validation_Temperature[{k}]", -273.15, 2000)
-            draft.readings[one_line(legend)[:80]] = value
+            name = one_line(legend)[:80]
+            draft.readings[name] = value
+            if place := _KEYS["temperatures"].get(SLICE.sub("", name)):
+                draft.places[name] = place
             draft.leave(f"Temperature_Validation [{legend}]", value, "degC, stored: a steady state to compare with")
+    for key, boundary in _KEYS["surroundings"].items():
+        if file.text(key):
+            draft.surroundings[boundary] = file.number(key, COLDEST, HOT_ROOM)
 
 
 def _zero(text: str) -> bool:

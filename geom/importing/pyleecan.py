@@ -41,6 +41,9 @@ SECTIONS = {
     ),
     "Wwire": lambda c: math.pi / 4 * c["Wwire"] ** 2 * c.get("Nwppc", 1),
 }
+# Lengths (m) that pyleecan writes where nobody gave one, and why a shorter one than the stacks goes nowhere here.
+UNSAID_M = {"Lmag": 0.95, "Lshaft": 0.442, "Lfra": 0.35}
+HOLDS = {"Lshaft": "the shaft goes through all of it here", "Lfra": "the frame is longer than all it holds here"}
 PLACEHOLDER = 1  # what pyleecan writes for a property of a material that nobody gave
 LOST = {
     "skew": "the iron is straight here",
@@ -93,6 +96,7 @@ def read_pyleecan(path: Path, family_template: str) -> Draft:
     count, section = _stator(draft, pair[0])
     _rotor(draft, pair[1], pair[0])
     _shaft(draft, document, pair)
+    _lengths(draft, document, pair)
     for part, key in (("stator.core", "stator"), ("rotor.core", "rotor"), ("shaft", "shaft")):
         _material(draft, part, _part(_part(document, key), "mat_type"), f"{key}.mat_type")
     conductor = _part(_part(pair[0].node, "winding"), "conductor")
@@ -427,6 +431,8 @@ def _rotor(draft: Draft, rotor: Lamination, stator: Lamination) -> None:
         draft.take("geometry.rotor", "rotor.Rext", core_diameter_mm=in_mm(2 * rotor.outer))
     if abs(rotor.length - stator.length) > 1e-6:
         draft.take("geometry.rotor", "rotor.L1", stack_length_mm=in_mm(rotor.length))
+        words = f"contradicts stator.L1 = {stator.length:g} m: each stack has its own here, change one if they are one"
+        draft.leave("rotor.L1", rotor.length, words)
     _stacking(draft, rotor, "rotor")
 
 
@@ -473,8 +479,8 @@ def _material(draft: Draft, part: str, material: Node, source: str, **like: str)
 def _magnet(draft: Draft, magnet: Node, rotor: Lamination, name: str) -> None:
     if draft.value("materials", "magnets") is None:
         _material(draft, "magnets", _part(magnet, "mat_type"), f"{name}.mat_type")
-    length = magnet.get("Lmag")
-    if isinstance(length, int | float) and abs(length - rotor.length) > 0.005 * rotor.length:
+    length = _length(magnet, "Lmag")
+    if length is not None and abs(length - rotor.length) > 0.005 * rotor.length:
         words = f"contradicts rotor.L1 = {rotor.length:g} m: magnets are as long as the rotor here"
         draft.leave(f"{name}.Lmag", length, words)
 
@@ -526,12 +532,34 @@ def _shaft(draft: Draft, document: Node, pair: list[Lamination]) -> None:
         draft.assume("geometry.shaft", "no shaft in the file: 0.3 of the rotor", diameter_mm=diameter)
 
 
+def _length(node: Node, key: str) -> float | None:
+    """m; None of what nobody gave."""
+    length = node.get(key)
+    if isinstance(length, bool) or not isinstance(length, int | float) or length == UNSAID_M[key]:
+        return None
+    return length
+
+
+def _lengths(draft: Draft, document: Node, pair: list[Lamination]) -> None:
+    """Shaft and frame that are shorter than what they hold."""
+    longest = max(pair, key=lambda lamination: lamination.length)
+    name = "stator.L1" if longest is pair[0] else "rotor.L1"
+    for part, key in (("shaft", "Lshaft"), ("frame", "Lfra")):
+        length = _length(_part(document, part), key)
+        if length is not None and length < longest.length - 1e-6:
+            draft.leave(f"{part}.{key}", length, f"contradicts {name} = {longest.length:g} m: {HOLDS[key]}")
+
+
 def _frame(draft: Draft, document: Node, stator: Lamination, family_template: str) -> None:
     assumptions.template(draft, family_template)
     node = _part(document, "frame")
     inner, outer = node.get("Rint"), node.get("Rext")
-    housed = family_template != "open"
-    if housed and isinstance(inner, int | float) and isinstance(outer, int | float) and outer > inner:
+    if family_template == "open" or not isinstance(inner, int | float) or not isinstance(outer, int | float):
+        pass  # no frame here, or none in the file
+    elif outer < inner:
+        words = f"contradicts frame.Rint = {inner:g} m, which lies inside it: the wall is the template's"
+        draft.leave("frame.Rext", outer, words)
+    elif outer > inner:
         draft.take("geometry.housing", "frame.Rext - frame.Rint", thickness_mm=in_mm(outer - inner))
         if abs(inner - stator.outer) > 1e-5:
             words = f"contradicts stator.Rext = {stator.outer:g} m, which the housing encloses here"

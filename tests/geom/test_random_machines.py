@@ -21,7 +21,7 @@ FEW = {
     "cross-section": {"stator.slots": 9, "housing.fins": 6, "housing.turns": 3},
 }
 OFTEN_ZERO = {"fan.depth_mm": 15.0, "stator.wedge_mm": 0.8, "stator.liner_gap_mm": 0.5, "commutator.bars": 8}
-OFTEN_ZERO |= {"rotor.core_diameter_mm": 165.0, "rotor.stack_length_mm": 140.0}
+OFTEN_ZERO |= {"rotor.core_diameter_mm": 165.0, "rotor.stack_length_mm": 140.0, "rotor.sleeve_mm": 2.0}
 FAMILIES = pytest.mark.parametrize("family", families().values(), ids=lambda family: family.name)
 quick = partial(settings, deadline=None, suppress_health_check=list(HealthCheck))
 

@@ -236,12 +236,35 @@ def test_the_file_written_says_where_each_value_is_from(tmp_path):
 
 
 def test_what_contradicts_is_said(tmp_path):
-    changes = {"rotor__hole__0__magnet_0__Lmag": 0.95, "shaft__Drsh": 0.018, "stator__winding__Ntcoil": 2000}
+    changes = {"rotor__hole__0__magnet_0__Lmag": 0.03, "shaft__Drsh": 0.018, "stator__winding__Ntcoil": 2000}
     rows = import_draft(saved(tmp_path, pyleecan(**changes))).table().documents()
     left = {row["key"]: row["source"] for row in rows if row["kind"] == "not understood"}
     assert "contradicts rotor.L1" in left["rotor.hole[0].magnet_0.Lmag"]
     assert "contradicts rotor.Rint" in left["shaft.Drsh"]
     assert "stator.winding.conductor" in left
+
+
+def left_of(folder, machine):
+    rows = import_draft(saved(folder, machine)).table().documents()
+    return {row["key"]: (row["value"], row["source"]) for row in rows if row["kind"] == "not understood"}
+
+
+def test_lengths_and_radii_that_contradict_are_said_with_both_values(tmp_path):
+    """What pyleecan writes where nobody gave a length says nothing."""
+    frame = {"__class__": "Frame", "Lfra": 0.03, "Rint": 0.06, "Rext": 0.055}
+    machine = pyleecan(rotor__L1=0.042, shaft__Lshaft=0.035) | {"frame": frame}
+    left = left_of(tmp_path, machine)
+    assert left["rotor.L1"][0] == 0.042
+    assert "stator.L1 = 0.04 m" in left["rotor.L1"][1]
+    assert left["shaft.Lshaft"][0] == 0.035
+    assert "rotor.L1 = 0.042 m" in left["shaft.Lshaft"][1]
+    assert "rotor.L1 = 0.042 m" in left["frame.Lfra"][1]
+    assert "frame.Rint = 0.06 m" in left["frame.Rext"][1]
+    assert "contradicts rotor.L1 = 0.042 m" in left["rotor.hole[0].magnet_0.Lmag"][1]
+    unsaid = {"shaft__Lshaft": 0.442, "rotor__hole__0__magnet_0__Lmag": 0.95, "rotor__L1": 0.6, "stator__L1": 0.6}
+    machine = pyleecan(**unsaid) | {"frame": {"__class__": "Frame", "Lfra": 0.35, "Rint": 0.2, "Rext": 0.2}}
+    assert not left_of(tmp_path, machine).keys() & {"rotor.L1", "shaft.Lshaft", "frame.Lfra", "frame.Rext"}
+    assert "rotor.hole[0].magnet_0.Lmag" not in left_of(tmp_path, machine)
 
 
 def test_a_cage_and_a_wound_rotor(tmp_path):

@@ -9,11 +9,13 @@ from typing import Annotated, Any
 
 import typer
 
+from geom.errors import InputError
 from geom.importing.assumptions import TEMPLATES, USUAL_TEMPLATE
 from geom.importing.draft import ASSUMED, COPIED, UNUSED, Draft
 from geom.text import counted
 from lumped.machine.loss_sources import checked_losses
 from thermoscope.commands.model.machines import write_machine_file
+from thermoscope.commands.model.stored_case import stored_summary, write_stored_case
 from thermoscope.console.options import Json, Out
 from thermoscope.console.summary import Summary
 from thermoscope.console.terminal import give
@@ -36,6 +38,11 @@ Copper = Annotated[
     float | None, typer.Option("--copper-degc", metavar="DEGC", help="Of a loss map: the winding's temperature in it.")
 ]
 
+Case = Annotated[
+    Path | None,
+    typer.Option("--case", metavar="DIR", help="A new case instead: the machine, and the file's temperatures as test."),
+]
+
 
 def import_(
     file: File,
@@ -45,11 +52,14 @@ def import_(
     units: Units = "",
     machine: OfMachine = None,
     copper_degC: Copper = None,
+    case: Case = None,
     target: Json = None,
 ) -> int:
     """A machine file of another program as one of ours: what was taken, what is assumed, what was not understood."""
     from geom import import_draft
 
+    if case is not None and (out is not None or machine is not None):
+        raise InputError("--case holds the machine file itself", "--case", "without --out and --machine")
     if machine is not None:
         from thermoscope.commands.model.import_losses import losses_draft
 
@@ -57,15 +67,18 @@ def import_(
     else:
         draft = import_draft(file, family_template, stack_mm, units)
         text = draft.toml()
-    target_file = write_import(draft, text, out or Path())
+    test = None if case is None else write_stored_case(draft, text, case)
+    target_file = write_import(draft, text, out or Path()) if case is None else case / "machine.toml"
     document = {
         "machine": draft.name,
         "program": draft.program,
         "file": target_file,
         "values": [entry.document() for entry in draft.entries],
         "readings_C": draft.readings,
+        "test": test,
     }
-    give(document, target, lambda: import_summary(draft, target_file))
+    summary = import_summary(draft, target_file)
+    give(document, target, lambda: summary if test is None else stored_summary(draft, test, summary))
     return 0
 
 
