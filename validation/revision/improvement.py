@@ -243,7 +243,7 @@ def _added(
             if not supervisor.suggest:
                 break
             continue
-        for names in ((name,), needed_together(diagnosis, name)):
+        for names in dict.fromkeys((sure_set(diagnosis, name, supervisor), (name,), needed_together(diagnosis, name))):
             new = names and not any(_stands(case, one) for one in names)
             if new and (step := _accepted(add, case, names, refused, progress)):
                 return step, evidence(diagnosis, next(c for c in choice if c.effect == name)), ""
@@ -340,6 +340,17 @@ def offered(diagnosis: Diagnosis) -> tuple[Candidate, ...]:
     first = diagnosis.groups[0] if diagnosis.groups and diagnosis.verdict != "absorbed" else ()
     rows = [c for c in diagnosis.candidates if c.effect in first]
     return tuple(rows) if all(c.decision in ("named", "group") for c in rows) else ()
+
+
+def sure_set(diagnosis: Diagnosis, name: str, supervisor: Supervisor) -> tuple[str, ...]:
+    """The set of effects that is sure to be missing whole, if an effect is one of it and nobody has to be asked; ().
+
+    Part of it, fitted alone, bends to what the others do, and what it leaves may be like nothing that is known.
+    """
+    if not supervisor.suggest or not diagnosis.odds or diagnosis.odds[0].probability < SURE:
+        return ()
+    likeliest = diagnosis.odds[0].effects
+    return likeliest if name in likeliest and all(one == name or _unasked(one) for one in likeliest) else ()
 
 
 def needed_together(diagnosis: Diagnosis, name: str) -> tuple[str, ...]:

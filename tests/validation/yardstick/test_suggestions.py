@@ -17,6 +17,7 @@ from validation.inference.result import Candidate
 from validation.parameters.unknowns import scene_of
 from validation.revision import improvement
 from validation.revision.improvement import Refusal, Step, Supervisor, _added, ended, further_step, singletons
+from validation.revision.revise import TOGETHER
 from validation.yardstick.suggestions import suggested_effects
 from validation.yardstick.terms import Term
 from validation.yardstick.yardstick import yardstick
@@ -170,6 +171,18 @@ def test_a_lasting_fault_that_is_left_hides_nothing_after_it_where_nobody_is_ask
     said = Said(((names[0],), (names[1],)), odds, "several", names, rows, "two are missing")
     step, _, why = _added(poorer, Supervisor(singletons, suggest=suggest), said, 0.0, [], no_progress)
     assert (step and step.effect, bool(why)) == (name, name is None)
+
+
+@pytest.mark.parametrize(("suggest", "count"), [(True, 2), (False, 1)])
+def test_a_set_that_is_sure_is_added_whole_where_nobody_is_asked(case, suggest, count):
+    poorer = without(case, ("body", "ambient"), ("core", "body"))
+    names = ("coupling@body|core", "convection.constant@body")
+    rows = tuple(Candidate(n, 9.0, 3.0, 1.0, "1", (0.5, 1.5), "named", probability=0.99) for n in names)
+    odds = (SimpleNamespace(effects=names, probability=0.99),)
+    said = Said(((names[0],), (names[1],)), odds, "several", names, rows, "two are missing")
+    ask = Supervisor(lambda _, choice: choice[0].effect, suggest=suggest)
+    step, _, why = _added(poorer, ask, said, 0.0, [], no_progress)
+    assert (len(step.effect.split(TOGETHER)), why) == (count, "")
 
 
 def test_what_did_not_predict_is_not_tried_again(case):
