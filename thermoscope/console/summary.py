@@ -137,7 +137,7 @@ def grid(table: Table, rows: Sequence[Sequence[Any]], width: int) -> list[tuple[
         j = max(words, key=lambda j: widths[j])
         if widths[j] <= LEAST:
             break
-        widths[j] -= 1
+        widths[j] -= min(widths[j] - LEAST, _total(widths, columns) - width)
 
     def lines(cells: Sequence[str]) -> list[str]:
         parts = [wrap(cells[j], widths[j]) if j in words else [cells[j]] for j in columns]
