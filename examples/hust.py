@@ -2,7 +2,7 @@
 
     python examples/hust.py [--most 6] [--ablation] [--out out/hust]
 
-What `thermoscope explain improve --yes` does: the effect that leads is added and what case.toml leaves free is
+What `thermoscope explain improve --yes` does: what leads or is sure is added and what case.toml leaves free is
 calibrated again; where nothing is left to add, what a free network needs, as long as it predicts better. Profiles 5,
 8, 11 and 15 are only ever predicted, and nothing here looks at them before the end. With --ablation every effect that
 was added is deleted in turn, the rest calibrated anew, and the diagnosis asked what is missing. Prints the tables of
