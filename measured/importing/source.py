@@ -49,6 +49,7 @@ YEAR = re.compile(r"^\s*['’](?=\d\d[-/.]\d\d[-/.]\d\d\b)")
 POINTED = re.compile(r"(?:[01]?\d|2[0-3])\.[0-5]\d\.[0-5]\d")
 TAG = re.compile(r"\s*<[^<>]*>|\\[^\\]*:\d+$")  # of a channel, no part of its name: 101 Winding <TC K>, tStator\ETKC:1
 VALUED = re.compile(r"([-+]?\d+(?:[.,]\d+)?)\s*([^\d\s.,:;+/|()-][^\d\s/|()]*)")
+CELL_LETTERS = 80  # of a cell with two readings; of a longer one looking for them takes as long as its square
 SEVERAL = re.compile(rf"(?:{VALUED.pattern}(?:[\s/|(),;]+|$)){{2,}}")
 UNCALCULATED = re.compile(rb"</f>\s*(?:<v\s*/>|<v></v>)?\s*</c>")
 
@@ -373,13 +374,14 @@ def _with_colons(cells: Sequence[Any]) -> Sequence[Any]:
 
 def _with_several(name: str, cells: Sequence[Any]) -> dict[str, Sequence[Any]]:
     """A column for each of the readings that stand with their units in one cell: 23.5 C (74.3 F), 12.1 V / 3 A."""
-    first = (
-        "" if isinstance(cells, np.ndarray) else next((c for c in cells if isinstance(c, str) and not _empty(c)), "")
-    )
-    units = [unit for _, unit in VALUED.findall(first)]
-    if not SEVERAL.fullmatch(first) or is_clock(first) or not all(map(is_unit, units)):
+    texts = (c for c in cells if isinstance(c, str) and not _empty(c)) if not isinstance(cells, np.ndarray) else ()
+    first = next(iter(texts), "")
+    if len(first) > CELL_LETTERS or not SEVERAL.fullmatch(first) or is_clock(first):
         return {name: cells}
-    rows = [VALUED.findall(c) if isinstance(c, str) else [] for c in cells]
+    units = [unit for _, unit in VALUED.findall(first)]
+    if not all(map(is_unit, units)):
+        return {name: cells}
+    rows = [VALUED.findall(c) if isinstance(c, str) and len(c) <= CELL_LETTERS else [] for c in cells]
     good = [[value for value, _ in row] if [unit for _, unit in row] == units else [None] * len(units) for row in rows]
     names = _once([f"{name} [{unit}]" for unit in units])
     return dict(zip(names, map(list, zip(*good, strict=True)), strict=True))

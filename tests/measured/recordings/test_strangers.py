@@ -1155,3 +1155,11 @@ def test_probes_that_are_moved_once_are_temperatures_by_their_readings(tmp_path)
         tmp_path, table("t [s],Sensor 2,Sensor 5", S["t"], moved[0] + S["t"] / 1e4, moved[1] + S["t"] / 1e4)
     )
     assert goes(document) == {"Sensor 2": "part-2", "Sensor 5": "part-5"}
+
+
+def test_a_cell_of_a_hundred_thousand_digits_is_one_cell(tmp_path):
+    """Looked at for readings with their units digit after digit it would take hours."""
+    file = tmp_path / "hostile.csv"
+    rows = [f"{t},{'1' * 10**5},{20 + t / 60}\n" for t in range(0, 600, 60)]
+    file.write_text("time_s,note,T_winding_C\n" + "".join(rows))
+    assert "note" in read_source(file).labels
