@@ -64,6 +64,7 @@ GRID_POINTS = 15  # instants around each end
 COARSEST = 4.0  # timing steps between instants that tell one stretch from another; what carries weight is timed closer
 TANGENT_RANGE = 0.1  # of an event's amplitude: after a larger change its tangent is made anew
 DIRECTIONS = ((1, 0), (0, 1), (1, 1))  # begin, end, both
+WORSE = 50.0  # nats by first tangents from which ends are not run again: of 3,000 runs none so far behind came first
 MOVES = 8  # of the ends and refitting with them: of a size that was ten times off at first five were needed
 RIVALS, HALF = 2, 0.5  # that are not likely yet: how many get their ends anew, and what they explain of the most
 FITTED = 4  # of the most probable refits: an event in any of them that will be told gets its ends anew
@@ -397,11 +398,14 @@ def refit_span(fit: Fit, effect: During, test: Test, spans: Sequence[Span], i: i
 
     def misfits(best: Span, reach_s: float) -> Callable[[Span], float]:
         closer, near = closer_look(fit, test, best, reach_s, fit.values)
-        misfit = Misfit.create(closer, near, effect.name)
+        misfit, least = Misfit.create(closer, near, effect.name), np.inf
 
         def of(span: Span) -> float:
+            nonlocal least
             now = Event.of({test.name: [*others, span]}).name
-            return misfit.of(with_condition(fit.network, effect.condition, now))
+            left = misfit.of(with_condition(fit.network, effect.condition, now), least + WORSE)
+            least = min(least, left)
+            return left
 
         return of
 
@@ -483,11 +487,15 @@ class Misfit:
             H[np.ix_(at[some], at[some])] += x.XX[:-1, :-1][some][:, some]
         return cls(fit, test, fit.unknowns.parameters[k], here, H, b)
 
-    def of(self, network: Network) -> float:
-        """Of another network with the same parameters: half the squares (nats) left; inf where it runs away."""
+    def of(self, network: Network, most: float = np.inf) -> float:
+        """Of another network with the same parameters: half the squares (nats) left; inf where it runs away.
+
+        most : nats beyond which it is enough to know that it is more
+        """
         values = {**parameter_values(network, {}), **self.fit.values}
         left, more = self.moved(network, values, 0.0)
-        if abs(more) > TANGENT_RANGE * abs(values[self.free.name]):  # a lid that is open has another tangent
+        far = abs(more) > TANGENT_RANGE * abs(values[self.free.name])  # a lid that is open has another tangent
+        if far and left < most:
             left, _ = self.moved(network, values, more)
         return left
 
