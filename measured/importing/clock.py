@@ -545,7 +545,8 @@ def _of_day(source: Source, column: str) -> Clock:
     seconds = np.array([_total(p, two and not hours) for p in parsed])
     finite = np.flatnonzero(np.isfinite(seconds))
     turns, step = np.zeros(seconds.size), np.diff(seconds[finite])
-    early = HOUR_S + step[step < 0] - (usual := float(np.median(np.abs(step))) if step.size else 0.0)
+    usual = float(np.median(np.abs(step))) if step.size else 0.0
+    early = HOUR_S + step[step < 0] - usual
     no_hours = two and not hours and early.size and bool((np.abs(early) <= usual / 2).all())
     turn = HOUR_S if no_hours else DAY_S
     turns[finite[1:]] = np.cumsum(step < -turn / 2)
