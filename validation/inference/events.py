@@ -65,6 +65,9 @@ COARSEST = 4.0  # timing steps between instants that tell one stretch from anoth
 TANGENT_RANGE = 0.1  # of an event's amplitude: after a larger change its tangent is made anew
 DIRECTIONS = ((1, 0), (0, 1), (1, 1))  # begin, end, both
 WORSE = 50.0  # nats by first tangents from which ends are not run again: of 3,000 runs none so far behind came first
+STEERED = 10.0  # timing steps that ends may be moved by their tangents at once
+STEERS = 8  # of all ends together
+ELSEWHERE = 1.5  # times the size of before, beyond which ends are looked for far away again
 MOVES = 8  # of the ends and refitting with them: of a size that was ten times off at first five were needed
 RIVALS, HALF = 2, 0.5  # that are not likely yet: how many get their ends anew, and what they explain of the most
 FITTED = 4  # of the most probable refits: an event in any of them that will be told gets its ends anew
@@ -180,13 +183,13 @@ def next_reach(reach_s: float) -> float:
     return 2.0 * reach_s / GRID_POINTS
 
 
-def closer_look(fit: Fit, test: Test, span: Span, reach_s: float, values: Values) -> tuple[Fit, Test]:
-    """The fit and the test with readings around both ends of a span in blocks as short as the instants that are tried
+def closer_look(fit: Fit, test: Test, instants: Sequence[float], reach_s: float, values: Values) -> tuple[Fit, Test]:
+    """The fit and the test with readings around the ends of spans in blocks as short as the instants that are tried
     there; as they are, where the blocks of the fit are short enough.
 
     values : of what is not calibrated
     """
-    near = finer_blocks(test, span, reach_s)
+    near = finer_blocks(test, instants, reach_s)
     if near is test:
         return fit, test
     state = {**parameter_values(fit.network, values), **fit.values}
@@ -203,7 +206,7 @@ def closer_look(fit: Fit, test: Test, span: Span, reach_s: float, values: Values
     return replace(fit, parts=parts, error=error), near
 
 
-def finer_blocks(test: Test, span: Span, reach_s: float) -> Test:
+def finer_blocks(test: Test, instants: Sequence[float], reach_s: float) -> Test:
     """The test with its readings there in such blocks; itself, where they are short enough."""
     n, step = test.time.size, sample_step(test)
     start, fine = groups(n), max(round(next_reach(reach_s) / step), 1)
@@ -211,7 +214,7 @@ def finer_blocks(test: Test, span: Span, reach_s: float) -> Test:
         return test
     first = np.zeros(n, bool)
     first[start] = True
-    for at in span:
+    for at in instants:
         low, high = np.searchsorted(test.time, [at - reach_s, at + reach_s])
         first[low:high:fine] = True
     return replace(test, blocks=np.flatnonzero(first))
@@ -283,8 +286,13 @@ def instants_around(test: Test, at: float, reach_s: float) -> Array:
     t, step = test.time, timing_step(test)
     low, high = max(at - reach_s, t[0]), min(at + reach_s, t[-1])
     count = int(min(GRID_POINTS, round((high - low) / step) + 1))
-    whole = t[0] + step * np.round((np.linspace(low, high, max(count, 1)) - t[0]) / step)
-    return np.unique(np.clip(np.round(whole, 2 - floor(log10(step))), t[0], t[-1]))
+    return np.unique(whole_instants(test, np.linspace(low, high, max(count, 1))))
+
+
+def whole_instants(test: Test, at: Array) -> Array:
+    """Instants (s) moved to whole timing steps inside the record."""
+    t, step = test.time, timing_step(test)
+    return np.clip(np.round(t[0] + step * np.round((at - t[0]) / step), 2 - floor(log10(step))), t[0], t[-1])
 
 
 def retimed(
@@ -307,17 +315,24 @@ def retimed(
         i for i in refits if i not in likely and hypotheses[i].log_bayes > least and _is_once(evidence, hypotheses[i])
     ]
     few = [hypotheses[i] for i in [*likely, *near[:RIVALS]][:FITTED]]
-    fits: dict[int, Fit] = {}
+    fits, sizes = dict[int, Fit](), dict[int, float]()
     for _ in range(MOVES):
         earlier, fits = fits, fits_of_events(evidence, few)
         due = {k: fit for k, fit in fits.items() if fit is not earlier.get(k)}  # about the same fit none moves again
-        new = moved_events(evidence, due, reach_s)
+        far = {k: size for k, fit in due.items() if is_far(size := fit.values[evidence.names[k]], sizes.get(k, 0.0))}
+        sizes |= far
+        new = moved_events(evidence, due, {k: reach_s for k in far})
         if not new:
             break
         priors: dict[Effect, float] = {e: evidence.causes[k].log_prior for k, e in new.items()}
         evidence = joined(evidence, priors, evidence.fit.values, list(new))
         few = [refit(evidence, h) if set(h.members) & set(new) else h for h in few]
     return evidence
+
+
+def is_far(size: float, other: float) -> bool:
+    """Is an event so much larger or smaller than another that its ends may be anywhere else?"""
+    return not 1.0 / ELSEWHERE < size / (other or np.inf) < ELSEWHERE
 
 
 def _is_once(evidence: Evidence, h: Weighed) -> bool:
@@ -342,14 +357,19 @@ def fits_of_events(evidence: Evidence, hypotheses: Sequence[Weighed]) -> dict[in
     return fits
 
 
-def moved_events(evidence: Evidence, fits: Mapping[int, Fit], reach_s: Mapping[str, float]) -> dict[int, During]:
-    """Events whose refits want other ends, or where none does further repeats, with these."""
+def moved_events(
+    evidence: Evidence, fits: Mapping[int, Fit], reach_s: Mapping[int, Mapping[str, float]]
+) -> dict[int, During]:
+    """Events whose refits want other ends, or where none does further repeats, with these.
+
+    reach_s : event -> test -> how far (s) an end may move; of others a few steps
+    """
 
     def moved(k: int) -> During:
         effect = evidence.effects[k]
         assert isinstance(effect, During)
         assert effect.event is not None
-        event = refit_ends(evidence, fits[k], effect, effect.event, reach_s)
+        event = refit_ends(evidence, fits[k], effect, effect.event, reach_s.get(k, {}))
         if event.name == effect.event.name:  # what lasts too long takes the room of its repeats
             event = further_repeats(evidence, fits[k], effect, event)
         return During.of(effect.base, event.name)
@@ -383,22 +403,23 @@ def throughout(evidence: Evidence, event: Event) -> bool:
 
 
 def refit_ends(evidence: Evidence, fit: Fit, effect: During, event: Event, reach_s: Mapping[str, float]) -> Event:
-    """The event with the ends that fit best about a refit, every span in turn, the others where they are."""
+    """The event with the ends that fit best about a refit: where they may be far off every span in turn, the others
+    where they are, then all of them together."""
     tests = {t.name: t for t in evidence.tests}
     spans = {t: list(each) for t, each in event.spans.items()}
-    for t, each in spans.items():
-        for i in range(len(each)):
-            each[i] = refit_span(fit, effect, tests[t], each, i, reach_s[t])
-    return Event.of(spans)
+    for t, reach in reach_s.items():
+        for i in range(len(spans.get(t, ()))):
+            spans[t][i] = refit_span(fit, effect, tests[t], spans[t], i, reach)
+    return steered_ends(fit, effect, [t for t in evidence.tests if t.name in spans], event, Event.of(spans))
 
 
 def refit_span(fit: Fit, effect: During, test: Test, spans: Sequence[Span], i: int, reach_s: float) -> Span:
-    """Begin and end of the i-th of an event's spans in a test that fit best."""
+    """Begin and end of the i-th of an event's spans in a test that fit best, to some steps."""
     others = [*spans[:i], *spans[i + 1 :]]
 
     def misfits(best: Span, reach_s: float) -> Callable[[Span], float]:
         closer, near = closer_look(fit, test, best, reach_s, fit.values)
-        misfit, least = Misfit.create(closer, near, effect.name), np.inf
+        misfit, least = Misfit.create(closer, [near], effect.name), np.inf
 
         def of(span: Span) -> float:
             nonlocal least
@@ -409,19 +430,79 @@ def refit_span(fit: Fit, effect: During, test: Test, spans: Sequence[Span], i: i
 
         return of
 
-    return closest_span(test, spans[i], reach_s, misfits)
+    return closest_span(test, spans[i], reach_s, misfits, COARSEST)
+
+
+def steered_ends(fit: Fit, effect: During, tests: Sequence[Test], event: Event, now: Event) -> Event:
+    """The event, now with other ends, with all of them moved where their tangents point, the size and all else with
+    them: where that fits worse half as far, until none moves by a step any more.
+
+    Parameters: `tests` in which it acts; `event` as it is in the fit.
+    """
+    closer, near, reach = fit, [], {t.name: STEERED * timing_step(t) for t in tests}
+    for t in tests:
+        closer, finer = closer_look(closer, t, np.ravel(now.spans[t.name]).tolist(), reach[t.name], fit.values)
+        near.append(finer)
+    misfit = Misfit.create(closer, near, effect.name)
+
+    def state(e: Event, size: float) -> tuple[float, float, Array]:
+        network = with_condition(fit.network, effect.condition, e.name)
+        return misfit.steered(network, size, [During.of(effect.base, piece.name) for piece in end_pieces(tests, e)])
+
+    size = fit.values[effect.name]
+    least, more, moves = state(now, size)
+    part = 1.0
+    for _ in range(STEERS):
+        new = moved_ends(tests, now, part * moves)
+        if new == now:
+            break
+        left, then, onward = state(new, size + part * more)
+        if left < least:
+            now, size, least, more, moves, part = new, size + part * more, left, then, onward, 1.0
+        else:
+            part *= 0.5
+    return now
+
+
+def end_pieces(tests: Sequence[Test], e: Event) -> list[Event]:
+    """For each end in turn, begin and end of each span, a step that the event would last longer if it moved."""
+    steps = {t.name: timing_step(t) for t in tests}
+    return [
+        Event.of({t: [piece]})
+        for t, step in steps.items()
+        for a, b in e.spans[t]
+        for piece in ((a - step, a), (b, b + step))
+    ]
+
+
+def moved_ends(tests: Sequence[Test], e: Event, longer: Array) -> Event:
+    """The event with each end moved outwards by so many steps, some at most; a span that would vanish or meet another
+    stays.
+
+    longer : as of `end_pieces`
+    """
+    out, moves = dict[str, list[Span]](), iter(np.clip(np.nan_to_num(longer), -STEERED, STEERED).reshape(-1, 2))
+    for t in tests:
+        spans, step = list(e.spans[t.name]), timing_step(t)
+        for i, (begin, end) in enumerate(spans):
+            x, y = next(moves) * step
+            new, last = whole_instants(t, np.array([begin - x, end + y])).tolist(), spans[i - 1][1] if i else -np.inf
+            if last < new[0] < new[1] < (spans[i + 1][0] if i + 1 < len(spans) else np.inf):
+                spans[i] = new[0], new[1]
+        out[t.name] = spans
+    return Event.of(out)
 
 
 def closest_span(
-    test: Test, best: Span, reach_s: float, misfits: Callable[[Span, float], Callable[[Span], float]]
+    test: Test, best: Span, reach_s: float, misfits: Callable[[Span, float], Callable[[Span], float]], fine: float = 0.5
 ) -> Span:
-    """Begin and end that fit best: first some instants around them, then others around the best of these, and so on to
-    every sample.
+    """Begin and end that fit best: first some instants around them, then others around the best of these, and so on
+    until they are so many timing steps apart.
 
     misfits : of the best so far and a reach, what says how badly a span fits; each is run: what is open and has cooled
         a part down to the room shows no tangent of being open longer
     """
-    while reach_s >= 0.5 * timing_step(test):
+    while reach_s >= fine * timing_step(test):
         misfit, results = misfits(best, reach_s), dict[Span, float]()
 
         def misfit_of(
@@ -456,70 +537,99 @@ def with_condition(network: Network, old: str, new: str) -> Network:
 
 @dataclass(frozen=True)
 class Misfit:
-    """How well a fit's model does in one test if something in it is another, all else and the model error moved along
+    """How well a fit's model does in some tests if something in it is another, all else and the model error moved along
     by their tangents.
 
-    free : the parameter whose tangent is another then, too, the k-th of them;  here : of the test's segments
-    H : curvature;  b : steepest descent;  of what the other tests say, and of this one without the k-th
+    free : the parameter whose tangent is another then, too, the k-th of them;  here : of the tests' segments
+    H : curvature;  b : steepest descent;  of what the other tests say, and of these without the k-th
     """
 
     fit: Fit
-    test: Test
+    tests: Sequence[Test]
     free: Parameter
     here: Sequence[Whitened]
     H: Array
     b: Array
 
     @classmethod
-    def create(cls, fit: Fit, test: Test, amplitude: str) -> Misfit:
+    def create(cls, fit: Fit, tests: Sequence[Test], amplitude: str) -> Misfit:
         """amplitude : that may become about twice as large, or nothing: further its tangent does not reach"""
-        (theta, sd), k = fit_prior(fit), fit.unknowns.names.index(amplitude)
+        (theta, sd), k, names = fit_prior(fit), fit.unknowns.names.index(amplitude), {t.name for t in tests}
         theta[k], sd[k] = 0.0, abs(theta[k])
         weight = sd**-2.0
         H, b, here = np.diag(weight), -weight * theta, []
         for s, x in zip(fit.parts, whitened(fit), strict=True):
             at, some = x.at[:-1], slice(None)
-            if s.test == test.name:
+            if s.test in names:
                 some = at != k
                 here.append(Whitened(at[some], x.X[:, :-1][:, some], x.XX))
             else:
                 b[at] += x.XX[:-1, -1]
             H[np.ix_(at[some], at[some])] += x.XX[:-1, :-1][some][:, some]
-        return cls(fit, test, fit.unknowns.parameters[k], here, H, b)
+        return cls(fit, tests, fit.unknowns.parameters[k], here, H, b)
 
     def of(self, network: Network, most: float = np.inf) -> float:
         """Of another network with the same parameters: half the squares (nats) left; inf where it runs away.
 
         most : nats beyond which it is enough to know that it is more
         """
-        values = {**parameter_values(network, {}), **self.fit.values}
-        left, more = self.moved(network, values, 0.0)
-        far = abs(more) > TANGENT_RANGE * abs(values[self.free.name])  # a lid that is open has another tangent
+        size = self.fit.values[self.free.name]
+        left, more = self.moved(network, size)
+        far = abs(more) > TANGENT_RANGE * abs(size)  # a lid that is open has another tangent
         if far and left < most:
-            left, _ = self.moved(network, values, more)
+            left, _ = self.moved(network, size + more)
         return left
 
-    def moved(self, network: Network, values: Values, more: float) -> tuple[float, float]:
-        """Half the squares (nats) left by tangents at an amplitude of so much more, and how much more they ask for."""
-        H, b, square = self.H.copy(), self.b.copy(), 0.0
-        k = self.fit.unknowns.names.index(self.free.name)
-        size = float(np.clip(values[self.free.name] + more, self.free.low, self.free.high))
-        more = size - values[self.free.name]
-        b[k] -= (strain := more * H[k, k])
-        try:
-            parts = segments(network, [self.test], {**values, self.free.name: size}, [self.free])
-        except NoSolution:
+    def moved(self, network: Network, size: float) -> tuple[float, float]:
+        """Half the squares (nats) left by tangents at such an amplitude, and how much more they ask for."""
+        if (said := self.equations(network, size)) is None:
             return float("inf"), 0.0
-        for s, (at, X, _) in zip(parts, self.here, strict=True):
-            z, r = self.fit.noise.whiten(s, np.column_stack([s.J, s.r])).T
-            H[k, k] += z @ z
-            H[k, at] += (both := z @ X)
-            H[at, k] += both
-            b[at] += r @ X
-            b[k] += z @ r
-            square += float(r @ r)
+        H, b, square = said
         step = np.linalg.solve(H, b)
-        return 0.5 * (square + strain * more - float(b @ step)), more + float(step[k])
+        return square - 0.5 * float(b @ step), float(step[self.k])
+
+    def steered(self, network: Network, size: float, pieces: Sequence[During]) -> tuple[float, float, Array]:
+        """Half the squares (nats) left at such an amplitude, how much more tangents ask for, and how many of each piece
+        in which it acts, too."""
+        if (said := self.equations(network, size, pieces)) is None:
+            return float("inf"), 0.0, np.zeros(len(pieces))
+        (H, b, square), n = said, self.b.size
+        others = np.flatnonzero(np.arange(n) != self.k)
+        left = square - 0.5 * float(b[others] @ np.linalg.solve(H[np.ix_(others, others)], b[others]))
+        step = np.linalg.solve(H + np.diag(np.append(np.zeros(n), np.full(len(pieces), STEERED**-2.0))), b)
+        return left, float(step[self.k]), np.asarray(step[n:], float)
+
+    @property
+    def k(self) -> int:
+        return self.fit.unknowns.names.index(self.free.name)
+
+    def equations(
+        self, network: Network, size: float, pieces: Sequence[During] = ()
+    ) -> tuple[Array, Array, float] | None:
+        """Curvature and steepest descent at such an amplitude, and half the squares there; None where it runs away.
+        Behind the fit's parameters stand pieces, of which it may have parts of an amplitude."""
+        n, k = self.b.size, self.k
+        size = float(np.clip(size, self.free.low, self.free.high))
+        more, at_end = size - self.fit.values[self.free.name], [k, *range(n, n + len(pieces))]
+        H, b = np.pad(self.H, (0, len(pieces))), np.pad(self.b - more * self.H[k], (0, len(pieces)))
+        square = more * (0.5 * more * self.H[k, k] - self.b[k])
+        larger = extended(network, pieces)
+        values = {**parameter_values(larger, {}), **self.fit.values, self.free.name: size}
+        new = larger.parameters[len(larger.parameters) - len(pieces) :]
+        try:
+            parts = segments(larger, self.tests, values, [self.free, *new])
+        except NoSolution:
+            return None
+        for s, (at, X, _) in zip(parts, self.here, strict=True):
+            Z = self.fit.noise.whiten(s, np.column_stack([s.J[:, :1], size * s.J[:, 1:], s.r]))
+            Z, r = Z[:, :-1], Z[:, -1]
+            H[np.ix_(at_end, at_end)] += Z.T @ Z
+            H[np.ix_(at_end, at)] += (both := Z.T @ X)
+            H[np.ix_(at, at_end)] += both.T
+            b[at] += r @ X
+            b[at_end] += r @ Z
+            square += 0.5 * float(r @ r)
+        return H, b, square
 
 
 def with_spans(network: Network, effect: During, test: Test, spans: Sequence[Span]) -> Network:
