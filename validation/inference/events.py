@@ -685,28 +685,51 @@ def _alike(span: Span, lengths: Sequence[float], slack: float) -> bool:
 def _first_spans(
     network: Network, test: Test, values: Values, effect: During, noise: Noise, usual: float, others: Sequence[Span]
 ) -> tuple[float, list[Span]]:
-    """Stretches that tangents about the others promise most of, and how far (s) their ends may be off."""
+    """Stretches that tangents about the others promise most of, and how far (s) their ends may be off: first anywhere,
+    then closer in the best of these."""
     begin, end = float(test.time[0]), float(test.time[-1])
     count = int(np.clip(np.ceil((end - begin) / (0.5 * usual)), 2, MOST_KNOTS))
-    knots = np.linspace(begin, end, count + 1)
-    now = with_spans(network, effect, test, others)
-    steps = [During.of(effect.base, Event.of({test.name: [(float(t), end + 1.0)]}).name) for t in knots[:-1]]
-    larger = extended(now, steps)
-    parts = segments(larger, [test], parameter_values(larger, values), larger.parameters[-len(steps) :])
-    u, V = np.zeros(count + 1), np.zeros((count + 1, count + 1))
+    knots, network = np.linspace(begin, end, count + 1), with_spans(network, effect, test, others)
+    first = _promised_spans(network, test, values, effect, noise, usual, others, knots)[:FIRST_RUNS]
+    if not first:
+        return 0.0, []
+    near = [np.linspace(a - 0.5 * usual, b + 0.5 * usual, MOST_KNOTS // len(first)) for a, b in first]
+    spacing, knots = float(max(x[1] - x[0] for x in near)), np.unique(np.clip(np.concatenate(near), begin, end))
+    apart: list[Span] = []
+    for a, b in _promised_spans(network, test, values, effect, noise, usual, others, knots):
+        if _alike((a, b), [usual], spacing) and all(b <= c or d <= a for c, d in apart):
+            apart.append((a, b))
+    return spacing, apart[:FIRST_RUNS]
+
+
+def _promised_spans(
+    network: Network,
+    test: Test,
+    values: Values,
+    effect: During,
+    noise: Noise,
+    usual: float,
+    others: Sequence[Span],
+    knots: Array,
+) -> list[Span]:
+    """Stretches between knots about as long as the others, or from knot to knot where these are further apart, by what
+    tangents promise; none that promises nothing."""
+    end, steps = float(test.time[-1]) + 1.0, knots[:-1].tolist()
+    effects = [During.of(effect.base, Event.of({test.name: [(t, end)]}).name) for t in steps]
+    larger = extended(network, effects)
+    parts = segments(larger, [test], parameter_values(larger, values), larger.parameters[-len(effects) :])
+    u, V = np.zeros(knots.size), np.zeros((knots.size, knots.size))
     for s in parts:
         X = values[effect.name] * noise.whiten(s, s.J)
         u[:-1] += X.T @ noise.whiten(s, s.r[:, None])[:, 0]
         V[:-1, :-1] += X.T @ X
-    spacing = knots[1] - knots[0]
-    i, j = (k.ravel() for k in np.meshgrid(np.arange(count), np.arange(1, count + 1), indexing="ij"))
+    i, j = np.triu_indices(knots.size, 1)
     length = knots[j] - knots[i]
-    short = (j == i + 1) & (length > usual)  # a stretch between two knots that are further apart
     pull, felt = u[i] - u[j], V[i, i] + V[j, j] - 2.0 * V[i, j]
     part = np.clip(pull / np.maximum(felt, 1e-12), 0.0, 1.0)  # a large one does less than tangents say
     gain = part * pull - 0.5 * part**2 * felt
-    free = (j > i) & np.array([not any(a < knots[y] and knots[x] < b for a, b in others) for x, y in zip(i, j)])
-    free &= short | (np.abs(length - usual) < LENGTHS * usual + spacing)
-    order = [k for k in np.argsort(-np.where(free, gain, -np.inf)) if free[k] and gain[k] > 0.0][:FIRST_RUNS]
-    middle, half = 0.5 * (knots[i] + knots[j]), 0.5 * np.where(short, usual, length)
-    return float(spacing), [(float(middle[k] - half[k]), float(middle[k] + half[k])) for k in order]
+    free = np.array([not any(a < knots[y] and knots[x] < b for a, b in others) for x, y in zip(i, j)])
+    short = (j == i + 1) & (length > usual)  # a stretch between two knots that are further apart
+    free &= (short | (np.abs(length - usual) < LENGTHS * usual + knots[1] - knots[0])) & (gain > 0.0)
+    order = [k for k in np.argsort(-gain, kind="stable") if free[k]]
+    return [(float(knots[i[k]]), float(knots[j[k]])) for k in order]
