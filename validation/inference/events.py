@@ -278,14 +278,14 @@ def repeat_gain(scores: Score, i: int, every: Sequence[int]) -> float:
     return a * (float(scores.u[i]) - a * float(np.sum(scores.V[i, others]))) - 0.5 * a**2 * float(scores.V[i, i])
 
 
-def instants_around(test: Test, at: float, reach_s: float) -> Array:
-    """Instants (s) near an instant, whole timing steps from the record's begin on and inside of it.
+def instants_around(test: Test, at: float, reach_s: float, steps: float = 1.0) -> Array:
+    """Instants (s) near an instant, whole timing steps from the record's begin on and inside of it, so many apart.
 
     To a hundredth of a step at least: names of events hold them, and no reading knows more.
     """
     t, step = test.time, timing_step(test)
     low, high = max(at - reach_s, t[0]), min(at + reach_s, t[-1])
-    count = int(min(GRID_POINTS, round((high - low) / step) + 1))
+    count = int(min(GRID_POINTS, round((high - low) / (steps * step)) + 1))
     return np.unique(whole_instants(test, np.linspace(low, high, max(count, 1))))
 
 
@@ -408,8 +408,9 @@ def refit_ends(evidence: Evidence, fit: Fit, effect: During, event: Event, reach
     tests = {t.name: t for t in evidence.tests}
     spans = {t: list(each) for t, each in event.spans.items()}
     for t, reach in reach_s.items():
-        for i in range(len(spans.get(t, ()))):
-            spans[t][i] = refit_span(fit, effect, tests[t], spans[t], i, reach)
+        for i, (begin, end) in enumerate(spans.get(t, ())):
+            far = max(end - begin, STEERED * timing_step(tests[t]))  # tangents are not further off than it lasts
+            spans[t][i] = refit_span(fit, effect, tests[t], spans[t], i, min(reach, far))
     return steered_ends(fit, effect, [t for t in evidence.tests if t.name in spans], event, Event.of(spans))
 
 
@@ -430,7 +431,7 @@ def refit_span(fit: Fit, effect: During, test: Test, spans: Sequence[Span], i: i
 
         return of
 
-    return closest_span(test, spans[i], reach_s, misfits, COARSEST)
+    return closest_span(test, spans[i], reach_s, misfits)
 
 
 def steered_ends(fit: Fit, effect: During, tests: Sequence[Test], event: Event, now: Event) -> Event:
@@ -494,15 +495,15 @@ def moved_ends(tests: Sequence[Test], e: Event, longer: Array) -> Event:
 
 
 def closest_span(
-    test: Test, best: Span, reach_s: float, misfits: Callable[[Span, float], Callable[[Span], float]], fine: float = 0.5
+    test: Test, best: Span, reach_s: float, misfits: Callable[[Span, float], Callable[[Span], float]]
 ) -> Span:
-    """Begin and end that fit best: first some instants around them, then others around the best of these, and so on
-    until they are so many timing steps apart.
+    """Begin and end that fit best to some steps: first some instants around them, then others around the best of these,
+    and so on.
 
     misfits : of the best so far and a reach, what says how badly a span fits; each is run: what is open and has cooled
         a part down to the room shows no tangent of being open longer
     """
-    while reach_s >= fine * timing_step(test):
+    while reach_s >= COARSEST * timing_step(test):
         misfit, results = misfits(best, reach_s), dict[Span, float]()
 
         def misfit_of(
@@ -513,7 +514,7 @@ def closest_span(
             return results[span]
 
         for moves in DIRECTIONS * 2:
-            steps = instants_around(test, best[0], reach_s) - best[0], instants_around(test, best[1], reach_s) - best[1]
+            steps = [instants_around(test, end, reach_s, COARSEST) - end for end in best]
             first, last = float(test.time[0]), float(test.time[-1])
             new = [(best[0] + d * moves[0], best[1] + d * moves[1]) for d in steps[moves[0] == 0]]
             best = min([best, *(x for x in new if first <= x[0] and x[1] <= last)], key=misfit_of)
@@ -694,7 +695,7 @@ def _first_spans(
     if not first:
         return 0.0, []
     near = [np.linspace(a - 0.5 * usual, b + 0.5 * usual, MOST_KNOTS // len(first)) for a, b in first]
-    spacing, knots = float(max(x[1] - x[0] for x in near)), np.unique(np.clip(np.concatenate(near), begin, end))
+    spacing, knots = float(max(x[1] - x[0] for x in near)), np.unique(whole_instants(test, np.concatenate(near)))
     apart: list[Span] = []
     for a, b in _promised_spans(network, test, values, effect, noise, usual, others, knots):
         if _alike((a, b), [usual], spacing) and all(b <= c or d <= a for c, d in apart):
