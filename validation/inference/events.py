@@ -8,6 +8,7 @@ effect for a little longer, which is linear whatever the size.
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, replace
 from math import floor, log10
 from typing import Any
@@ -24,7 +25,7 @@ from lumped.transfer.laws import Law, Wrapped
 from measured.case import Test
 from measured.doubt import USUAL
 from measured.sensors.blocks import groups
-from validation.calibration.calibrate import Fit
+from validation.calibration.calibrate import Fit, Iterate, bounded_step
 from validation.comparison.linearisation import segments
 from validation.effects.base import Effect
 from validation.effects.build import Shaped
@@ -57,6 +58,7 @@ from validation.inference.score import (
     whitened,
 )
 from validation.noise import Noise
+from validation.parameters.unknowns import Unknowns
 from validation.threads import side_by_side
 
 Values = Mapping[str, float]
@@ -411,7 +413,7 @@ def refit_ends(evidence: Evidence, fit: Fit, effect: During, event: Event, reach
         for i, (begin, end) in enumerate(spans.get(t, ())):
             far = max(end - begin, STEERED * timing_step(tests[t]))  # tangents are not further off than it lasts
             spans[t][i] = refit_span(fit, effect, tests[t], spans[t], i, min(reach, far))
-    return steered_ends(fit, effect, [t for t in evidence.tests if t.name in spans], event, Event.of(spans))
+    return steered_ends(fit, effect, evidence.tests, Event.of(spans))
 
 
 def refit_span(fit: Fit, effect: During, test: Test, spans: Sequence[Span], i: int, reach_s: float) -> Span:
@@ -420,7 +422,7 @@ def refit_span(fit: Fit, effect: During, test: Test, spans: Sequence[Span], i: i
 
     def misfits(best: Span, reach_s: float) -> Callable[[Span], float]:
         closer, near = closer_look(fit, test, best, reach_s, fit.values)
-        misfit, least = Misfit.create(closer, [near], effect.name), np.inf
+        misfit, least = Misfit.create(closer, near, effect.name), np.inf
 
         def of(span: Span) -> float:
             nonlocal least
@@ -434,34 +436,43 @@ def refit_span(fit: Fit, effect: During, test: Test, spans: Sequence[Span], i: i
     return closest_span(test, spans[i], reach_s, misfits)
 
 
-def steered_ends(fit: Fit, effect: During, tests: Sequence[Test], event: Event, now: Event) -> Event:
-    """The event, now with other ends, with all of them moved where their tangents point, the size and all else with
-    them: where that fits worse half as far, until none moves by a step any more.
+def steered_ends(fit: Fit, effect: During, tests: Sequence[Test], now: Event) -> Event:
+    """An event with all its ends moved where their tangents point, its size and all else with them: where that fits
+    worse half as far, until none moves by a step any more."""
+    closer, near = fit, list(tests)
+    for i, t in enumerate(tests):
+        if t.name in now.spans:
+            ends = np.ravel(now.spans[t.name]).tolist()
+            closer, near[i] = closer_look(closer, t, ends, STEERED * timing_step(t), fit.values)
+    p = len(fit.unknowns.parameters)
 
-    Parameters: `tests` in which it acts; `event` as it is in the fit.
-    """
-    closer, near, reach = fit, [], {t.name: STEERED * timing_step(t) for t in tests}
-    for t in tests:
-        closer, finer = closer_look(closer, t, np.ravel(now.spans[t.name]).tolist(), reach[t.name], fit.values)
-        near.append(finer)
-    misfit = Misfit.create(closer, near, effect.name)
+    def state(e: Event, theta: Array) -> tuple[float, Array, Array]:
+        """Objective with such ends, and what tangents ask for: a step of all else, and of each end in timing steps."""
+        size = fit.unknowns.values(theta)[effect.name]
+        pieces = [During.of(effect.base, piece.name) for piece in end_pieces(tests, e)]
+        network = extended(with_condition(fit.network, effect.condition, e.name), pieces)
+        far = STEERED * abs(size)
+        longer = [
+            replace(q, prior_sd=far, low=q.neutral - far, high=q.neutral + far)
+            for q in network.parameters[-len(pieces) :]
+        ]
+        unknowns, begin = Unknowns((*fit.unknowns.parameters, *longer)), np.append(theta, np.zeros(len(pieces)))
+        it = Iterate(network, near, unknowns, parameter_values(network, {}), begin, fit.noise, error=closer.error)
+        step = bounded_step(*it.slope(), it.theta, it.low, it.high) - it.theta
+        return it.objective, step[:p], step[p:] / size
 
-    def state(e: Event, size: float) -> tuple[float, float, Array]:
-        network = with_condition(fit.network, effect.condition, e.name)
-        return misfit.steered(network, size, [During.of(effect.base, piece.name) for piece in end_pieces(tests, e)])
-
-    size = fit.values[effect.name]
-    least, more, moves = state(now, size)
-    part = 1.0
+    part, theta = 1.0, fit.theta
+    least, more, moves = state(now, theta)
     for _ in range(STEERS):
         new = moved_ends(tests, now, part * moves)
         if new == now:
             break
-        left, then, onward = state(new, size + part * more)
-        if left < least:
-            now, size, least, more, moves, part = new, size + part * more, left, then, onward, 1.0
-        else:
-            part *= 0.5
+        with suppress(NoSolution):
+            left, then, onward = state(new, theta + part * more)
+            if left < least:
+                now, theta, least, more, moves, part = new, theta + part * more, left, then, onward, 1.0
+                continue
+        part *= 0.5
     return now
 
 
@@ -471,7 +482,7 @@ def end_pieces(tests: Sequence[Test], e: Event) -> list[Event]:
     return [
         Event.of({t: [piece]})
         for t, step in steps.items()
-        for a, b in e.spans[t]
+        for a, b in e.spans.get(t, ())
         for piece in ((a - step, a), (b, b + step))
     ]
 
@@ -483,7 +494,7 @@ def moved_ends(tests: Sequence[Test], e: Event, longer: Array) -> Event:
     longer : as of `end_pieces`
     """
     out, moves = dict[str, list[Span]](), iter(np.clip(np.nan_to_num(longer), -STEERED, STEERED).reshape(-1, 2))
-    for t in tests:
+    for t in [t for t in tests if t.name in e.spans]:
         spans, step = list(e.spans[t.name]), timing_step(t)
         for i, (begin, end) in enumerate(spans):
             x, y = next(moves) * step
@@ -538,99 +549,70 @@ def with_condition(network: Network, old: str, new: str) -> Network:
 
 @dataclass(frozen=True)
 class Misfit:
-    """How well a fit's model does in some tests if something in it is another, all else and the model error moved along
+    """How well a fit's model does in one test if something in it is another, all else and the model error moved along
     by their tangents.
 
-    free : the parameter whose tangent is another then, too, the k-th of them;  here : of the tests' segments
-    H : curvature;  b : steepest descent;  of what the other tests say, and of these without the k-th
+    free : the parameter whose tangent is another then, too, the k-th of them;  here : of the test's segments
+    H : curvature;  b : steepest descent;  of what the other tests say, and of this one without the k-th
     """
 
     fit: Fit
-    tests: Sequence[Test]
+    test: Test
     free: Parameter
     here: Sequence[Whitened]
     H: Array
     b: Array
 
     @classmethod
-    def create(cls, fit: Fit, tests: Sequence[Test], amplitude: str) -> Misfit:
+    def create(cls, fit: Fit, test: Test, amplitude: str) -> Misfit:
         """amplitude : that may become about twice as large, or nothing: further its tangent does not reach"""
-        (theta, sd), k, names = fit_prior(fit), fit.unknowns.names.index(amplitude), {t.name for t in tests}
+        (theta, sd), k = fit_prior(fit), fit.unknowns.names.index(amplitude)
         theta[k], sd[k] = 0.0, abs(theta[k])
         weight = sd**-2.0
         H, b, here = np.diag(weight), -weight * theta, []
         for s, x in zip(fit.parts, whitened(fit), strict=True):
             at, some = x.at[:-1], slice(None)
-            if s.test in names:
+            if s.test == test.name:
                 some = at != k
                 here.append(Whitened(at[some], x.X[:, :-1][:, some], x.XX))
             else:
                 b[at] += x.XX[:-1, -1]
             H[np.ix_(at[some], at[some])] += x.XX[:-1, :-1][some][:, some]
-        return cls(fit, tests, fit.unknowns.parameters[k], here, H, b)
+        return cls(fit, test, fit.unknowns.parameters[k], here, H, b)
 
     def of(self, network: Network, most: float = np.inf) -> float:
         """Of another network with the same parameters: half the squares (nats) left; inf where it runs away.
 
         most : nats beyond which it is enough to know that it is more
         """
-        size = self.fit.values[self.free.name]
-        left, more = self.moved(network, size)
-        far = abs(more) > TANGENT_RANGE * abs(size)  # a lid that is open has another tangent
+        values = {**parameter_values(network, {}), **self.fit.values}
+        left, more = self.moved(network, values, 0.0)
+        far = abs(more) > TANGENT_RANGE * abs(values[self.free.name])  # a lid that is open has another tangent
         if far and left < most:
-            left, _ = self.moved(network, size + more)
+            left, _ = self.moved(network, values, more)
         return left
 
-    def moved(self, network: Network, size: float) -> tuple[float, float]:
-        """Half the squares (nats) left by tangents at such an amplitude, and how much more they ask for."""
-        if (said := self.equations(network, size)) is None:
-            return float("inf"), 0.0
-        H, b, square = said
-        step = np.linalg.solve(H, b)
-        return square - 0.5 * float(b @ step), float(step[self.k])
-
-    def steered(self, network: Network, size: float, pieces: Sequence[During]) -> tuple[float, float, Array]:
-        """Half the squares (nats) left at such an amplitude, how much more tangents ask for, and how many of each piece
-        in which it acts, too."""
-        if (said := self.equations(network, size, pieces)) is None:
-            return float("inf"), 0.0, np.zeros(len(pieces))
-        (H, b, square), n = said, self.b.size
-        others = np.flatnonzero(np.arange(n) != self.k)
-        left = square - 0.5 * float(b[others] @ np.linalg.solve(H[np.ix_(others, others)], b[others]))
-        step = np.linalg.solve(H + np.diag(np.append(np.zeros(n), np.full(len(pieces), STEERED**-2.0))), b)
-        return left, float(step[self.k]), np.asarray(step[n:], float)
-
-    @property
-    def k(self) -> int:
-        return self.fit.unknowns.names.index(self.free.name)
-
-    def equations(
-        self, network: Network, size: float, pieces: Sequence[During] = ()
-    ) -> tuple[Array, Array, float] | None:
-        """Curvature and steepest descent at such an amplitude, and half the squares there; None where it runs away.
-        Behind the fit's parameters stand pieces, of which it may have parts of an amplitude."""
-        n, k = self.b.size, self.k
-        size = float(np.clip(size, self.free.low, self.free.high))
-        more, at_end = size - self.fit.values[self.free.name], [k, *range(n, n + len(pieces))]
-        H, b = np.pad(self.H, (0, len(pieces))), np.pad(self.b - more * self.H[k], (0, len(pieces)))
-        square = more * (0.5 * more * self.H[k, k] - self.b[k])
-        larger = extended(network, pieces)
-        values = {**parameter_values(larger, {}), **self.fit.values, self.free.name: size}
-        new = larger.parameters[len(larger.parameters) - len(pieces) :]
+    def moved(self, network: Network, values: Values, more: float) -> tuple[float, float]:
+        """Half the squares (nats) left by tangents at an amplitude of so much more, and how much more they ask for."""
+        H, b, square = self.H.copy(), self.b.copy(), 0.0
+        k = self.fit.unknowns.names.index(self.free.name)
+        size = float(np.clip(values[self.free.name] + more, self.free.low, self.free.high))
+        more = size - values[self.free.name]
+        b[k] -= (strain := more * H[k, k])
         try:
-            parts = segments(larger, self.tests, values, [self.free, *new])
+            parts = segments(network, [self.test], {**values, self.free.name: size}, [self.free])
         except NoSolution:
-            return None
+            return float("inf"), 0.0
         for s, (at, X, _) in zip(parts, self.here, strict=True):
-            Z = self.fit.noise.whiten(s, np.column_stack([s.J[:, :1], size * s.J[:, 1:], s.r]))
-            Z, r = Z[:, :-1], Z[:, -1]
-            H[np.ix_(at_end, at_end)] += Z.T @ Z
-            H[np.ix_(at_end, at)] += (both := Z.T @ X)
-            H[np.ix_(at, at_end)] += both.T
+            z, r = self.fit.noise.whiten(s, np.column_stack([s.J, s.r])).T
+            H[k, k] += z @ z
+            H[k, at] += (both := z @ X)
+            H[at, k] += both
             b[at] += r @ X
-            b[at_end] += r @ Z
-            square += 0.5 * float(r @ r)
-        return H, b, square
+            b[k] += z @ r
+            square += float(r @ r)
+        step = np.linalg.solve(H, b)
+        return 0.5 * (square + strain * more - float(b @ step)), more + float(step[k])
 
 
 def with_spans(network: Network, effect: During, test: Test, spans: Sequence[Span]) -> Network:
