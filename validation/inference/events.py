@@ -448,7 +448,8 @@ def steered_ends(fit: Fit, effect: During, tests: Sequence[Test], now: Event) ->
 
     def state(e: Event, theta: Array) -> tuple[float, Array, Array]:
         """Objective with such ends, and what tangents ask for: a step of all else, and of each end in timing steps."""
-        size = fit.unknowns.values(theta)[effect.name]
+        if not (size := fit.unknowns.values(theta)[effect.name]):  # nothing that could last longer
+            return float("inf"), theta, np.zeros(0)
         pieces = [During.of(effect.base, piece.name) for piece in end_pieces(tests, e)]
         network = extended(with_condition(fit.network, effect.condition, e.name), pieces)
         far = STEERED * abs(size)
