@@ -674,19 +674,23 @@ def _first_spans(
     begin, end = float(test.time[0]), float(test.time[-1])
     count = int(np.clip(np.ceil((end - begin) / (0.5 * usual)), 2, MOST_KNOTS))
     knots, network = np.linspace(begin, end, count + 1), with_spans(network, effect, test, others)
-    first = _promised_spans(network, test, values, effect, noise, usual, others, knots)[:FIRST_RUNS]
-    if not first:
+    gains = _promised_gains(network, test, values, effect, noise, usual, others, knots)
+    if not (first := sorted(gains, key=lambda x: -gains[x][0])[:FIRST_RUNS]):
         return 0.0, []
     near = [np.linspace(a - 0.5 * usual, b + 0.5 * usual, MOST_KNOTS // len(first)) for a, b in first]
     spacing, knots = float(max(x[1] - x[0] for x in near)), np.unique(whole_instants(test, np.concatenate(near)))
-    apart: list[Span] = []
-    for a, b in _promised_spans(network, test, values, effect, noise, usual, others, knots):
-        if _alike((a, b), [usual], spacing) and all(b <= c or d <= a for c, d in apart):
-            apart.append((a, b))
-    return spacing, apart[:FIRST_RUNS]
+    gains = _promised_gains(network, test, values, effect, noise, usual, others, knots)
+    best: list[Span] = []
+    for order in (0, 1):
+        apart: list[Span] = []
+        for a, b in sorted(gains, key=lambda x: -gains[x][order]):
+            if _alike((a, b), [usual], spacing) and all(b <= c or d <= a for c, d in apart):
+                apart.append((a, b))
+        best += apart[:FIRST_RUNS]
+    return spacing, best
 
 
-def _promised_spans(
+def _promised_gains(
     network: Network,
     test: Test,
     values: Values,
@@ -695,9 +699,9 @@ def _promised_spans(
     usual: float,
     others: Sequence[Span],
     knots: Array,
-) -> list[Span]:
-    """Stretches between knots about as long as the others, or from knot to knot where these are further apart, by what
-    tangents promise; none that promises nothing."""
+) -> dict[Span, tuple[float, float]]:
+    """Stretches between knots about as long as the others, or from knot to knot where these are further apart -> what
+    tangents promise (nats) of the size there is or less, and of all of it; none that promises nothing."""
     end, steps = float(test.time[-1]) + 1.0, knots[:-1].tolist()
     effects = [During.of(effect.base, Event.of({test.name: [(t, end)]}).name) for t in steps]
     larger = extended(network, effects)
@@ -715,5 +719,5 @@ def _promised_spans(
     free = np.array([not any(a < knots[y] and knots[x] < b for a, b in others) for x, y in zip(i, j)])
     short = (j == i + 1) & (length > usual)  # a stretch between two knots that are further apart
     free &= (short | (np.abs(length - usual) < LENGTHS * usual + knots[1] - knots[0])) & (gain > 0.0)
-    order = [k for k in np.argsort(-gain, kind="stable") if free[k]]
-    return [(float(knots[i[k]]), float(knots[j[k]])) for k in order]
+    every = zip(knots[i[free]], knots[j[free]], gain[free], (pull - 0.5 * felt)[free], strict=True)
+    return {(float(a), float(b)): (float(some), float(whole)) for a, b, some, whole in every}
