@@ -20,12 +20,12 @@ from scipy.special import logsumexp
 from geom.arrays import Array
 from geom.errors import NoSolution
 from lumped.model.multipliers import parameter_values
-from lumped.model.network import Network, Parameter
+from lumped.model.network import Network
 from lumped.transfer.laws import Law, Wrapped
 from measured.case import Test
 from measured.doubt import USUAL
 from measured.sensors.blocks import groups
-from validation.calibration.calibrate import Fit, Iterate, bounded_step
+from validation.calibration.calibrate import Fit, Iterate, bounded_step, minimise
 from validation.comparison.linearisation import segments
 from validation.effects.base import Effect
 from validation.effects.build import Shaped
@@ -46,17 +46,7 @@ from validation.inference.hypotheses import (
     sample_step,
     timing_step,
 )
-from validation.inference.score import (
-    Gram,
-    Score,
-    Whitened,
-    average_size,
-    fit_gram,
-    fit_prior,
-    fit_score,
-    score,
-    whitened,
-)
+from validation.inference.score import Gram, Score, average_size, fit_gram, fit_prior, fit_score, score
 from validation.noise import Noise
 from validation.parameters.unknowns import Unknowns
 from validation.threads import side_by_side
@@ -420,16 +410,19 @@ def refit_span(fit: Fit, effect: During, test: Test, spans: Sequence[Span], i: i
     """Begin and end of the i-th of an event's spans in a test that fit best, to some steps."""
     others = [*spans[:i], *spans[i + 1 :]]
 
+    amplitude = Unknowns((next(q for q in fit.unknowns.parameters if q.name == effect.name),))
+    size, fixed = amplitude.coordinates(fit.values), {**parameter_values(fit.network, {}), **fit.values}
+
     def misfits(best: Span, reach_s: float) -> Callable[[Span], float]:
         closer, near = closer_look(fit, test, best, reach_s, fit.values)
-        misfit, least = Misfit.create(closer, near, effect.name), np.inf
+        error = closer.error
 
         def of(span: Span) -> float:
-            nonlocal least
-            now = Event.of({test.name: [*others, span]}).name
-            left = misfit.of(with_condition(fit.network, effect.condition, now), least + WORSE)
-            least = min(least, left)
-            return left
+            now = with_condition(fit.network, effect.condition, Event.of({test.name: [*others, span]}).name)
+            try:
+                return minimise(now, [near], amplitude, size, fit.noise, fixed, 2, draft=True, error=error).objective
+            except NoSolution:
+                return float("inf")
 
         return of
 
@@ -546,74 +539,6 @@ def with_condition(network: Network, old: str, new: str) -> Network:
         return x if (law := changed(x.law)) == x.law else replace(x, law=law)
 
     return replace(network, links=tuple(map(instead, network.links)), sources=tuple(map(instead, network.sources)))
-
-
-@dataclass(frozen=True)
-class Misfit:
-    """How well a fit's model does in one test if something in it is another, all else and the model error moved along
-    by their tangents.
-
-    free : the parameter whose tangent is another then, too, the k-th of them;  here : of the test's segments
-    H : curvature;  b : steepest descent;  of what the other tests say, and of this one without the k-th
-    """
-
-    fit: Fit
-    test: Test
-    free: Parameter
-    here: Sequence[Whitened]
-    H: Array
-    b: Array
-
-    @classmethod
-    def create(cls, fit: Fit, test: Test, amplitude: str) -> Misfit:
-        """amplitude : that may become about twice as large, or nothing: further its tangent does not reach"""
-        (theta, sd), k = fit_prior(fit), fit.unknowns.names.index(amplitude)
-        theta[k], sd[k] = 0.0, abs(theta[k])
-        weight = sd**-2.0
-        H, b, here = np.diag(weight), -weight * theta, []
-        for s, x in zip(fit.parts, whitened(fit), strict=True):
-            at, some = x.at[:-1], slice(None)
-            if s.test == test.name:
-                some = at != k
-                here.append(Whitened(at[some], x.X[:, :-1][:, some], x.XX))
-            else:
-                b[at] += x.XX[:-1, -1]
-            H[np.ix_(at[some], at[some])] += x.XX[:-1, :-1][some][:, some]
-        return cls(fit, test, fit.unknowns.parameters[k], here, H, b)
-
-    def of(self, network: Network, most: float = np.inf) -> float:
-        """Of another network with the same parameters: half the squares (nats) left; inf where it runs away.
-
-        most : nats beyond which it is enough to know that it is more
-        """
-        values = {**parameter_values(network, {}), **self.fit.values}
-        left, more = self.moved(network, values, 0.0)
-        far = abs(more) > TANGENT_RANGE * abs(values[self.free.name])  # a lid that is open has another tangent
-        if far and left < most:
-            left, _ = self.moved(network, values, more)
-        return left
-
-    def moved(self, network: Network, values: Values, more: float) -> tuple[float, float]:
-        """Half the squares (nats) left by tangents at an amplitude of so much more, and how much more they ask for."""
-        H, b, square = self.H.copy(), self.b.copy(), 0.0
-        k = self.fit.unknowns.names.index(self.free.name)
-        size = float(np.clip(values[self.free.name] + more, self.free.low, self.free.high))
-        more = size - values[self.free.name]
-        b[k] -= (strain := more * H[k, k])
-        try:
-            parts = segments(network, [self.test], {**values, self.free.name: size}, [self.free])
-        except NoSolution:
-            return float("inf"), 0.0
-        for s, (at, X, _) in zip(parts, self.here, strict=True):
-            z, r = self.fit.noise.whiten(s, np.column_stack([s.J, s.r])).T
-            H[k, k] += z @ z
-            H[k, at] += (both := z @ X)
-            H[at, k] += both
-            b[at] += r @ X
-            b[k] += z @ r
-            square += float(r @ r)
-        step = np.linalg.solve(H, b)
-        return 0.5 * (square + strain * more - float(b @ step)), more + float(step[k])
 
 
 def with_spans(network: Network, effect: During, test: Test, spans: Sequence[Span]) -> Network:
