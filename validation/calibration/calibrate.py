@@ -172,12 +172,12 @@ class Iterate:
         unknowns: Unknowns,
         fixed: dict[str, float],
         theta: Array,
-        noise: Noise | None,
-        cache: CachedSegments | None,
-        draft: bool,
-        centre: Array | None,
-        worth: float,
-        error: ModelError | None,
+        noise: Noise | None = None,
+        cache: CachedSegments | None = None,
+        draft: bool = False,
+        centre: Array | None = None,
+        worth: float = WORTH,
+        error: ModelError | None = None,
     ) -> None:
         near = cache is not None and cache.nearby
         self.network, self.tests, self.unknowns, self.fixed = network, tests, unknowns, fixed

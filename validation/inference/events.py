@@ -8,6 +8,7 @@ effect for a little longer, which is linear whatever the size.
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, replace
 from math import floor, log10
 from typing import Any
@@ -19,12 +20,12 @@ from scipy.special import logsumexp
 from geom.arrays import Array
 from geom.errors import NoSolution
 from lumped.model.multipliers import parameter_values
-from lumped.model.network import Network, Parameter
+from lumped.model.network import Network
 from lumped.transfer.laws import Law, Wrapped
 from measured.case import Test
 from measured.doubt import USUAL
 from measured.sensors.blocks import groups
-from validation.calibration.calibrate import Fit
+from validation.calibration.calibrate import Fit, Iterate, bounded_step, minimise
 from validation.comparison.linearisation import segments
 from validation.effects.base import Effect
 from validation.effects.build import Shaped
@@ -45,18 +46,9 @@ from validation.inference.hypotheses import (
     sample_step,
     timing_step,
 )
-from validation.inference.score import (
-    Gram,
-    Score,
-    Whitened,
-    average_size,
-    fit_gram,
-    fit_prior,
-    fit_score,
-    score,
-    whitened,
-)
+from validation.inference.score import Gram, Score, average_size, fit_gram, fit_prior, fit_score, score
 from validation.noise import Noise
+from validation.parameters.unknowns import Unknowns
 from validation.threads import side_by_side
 
 Values = Mapping[str, float]
@@ -65,6 +57,9 @@ COARSEST = 4.0  # timing steps between instants that tell one stretch from anoth
 TANGENT_RANGE = 0.1  # of an event's amplitude: after a larger change its tangent is made anew
 DIRECTIONS = ((1, 0), (0, 1), (1, 1))  # begin, end, both
 WORSE = 50.0  # nats by first tangents from which ends are not run again: of 3,000 runs none so far behind came first
+STEERED = 10.0  # timing steps that ends may be moved by their tangents at once
+STEERS = 8  # of all ends together
+ELSEWHERE = 1.5  # times the size of before, beyond which ends are looked for far away again
 MOVES = 8  # of the ends and refitting with them: of a size that was ten times off at first five were needed
 RIVALS, HALF = 2, 0.5  # that are not likely yet: how many get their ends anew, and what they explain of the most
 FITTED = 4  # of the most probable refits: an event in any of them that will be told gets its ends anew
@@ -180,13 +175,13 @@ def next_reach(reach_s: float) -> float:
     return 2.0 * reach_s / GRID_POINTS
 
 
-def closer_look(fit: Fit, test: Test, span: Span, reach_s: float, values: Values) -> tuple[Fit, Test]:
-    """The fit and the test with readings around both ends of a span in blocks as short as the instants that are tried
+def closer_look(fit: Fit, test: Test, instants: Sequence[float], reach_s: float, values: Values) -> tuple[Fit, Test]:
+    """The fit and the test with readings around the ends of spans in blocks as short as the instants that are tried
     there; as they are, where the blocks of the fit are short enough.
 
     values : of what is not calibrated
     """
-    near = finer_blocks(test, span, reach_s)
+    near = finer_blocks(test, instants, reach_s)
     if near is test:
         return fit, test
     state = {**parameter_values(fit.network, values), **fit.values}
@@ -203,7 +198,7 @@ def closer_look(fit: Fit, test: Test, span: Span, reach_s: float, values: Values
     return replace(fit, parts=parts, error=error), near
 
 
-def finer_blocks(test: Test, span: Span, reach_s: float) -> Test:
+def finer_blocks(test: Test, instants: Sequence[float], reach_s: float) -> Test:
     """The test with its readings there in such blocks; itself, where they are short enough."""
     n, step = test.time.size, sample_step(test)
     start, fine = groups(n), max(round(next_reach(reach_s) / step), 1)
@@ -211,7 +206,7 @@ def finer_blocks(test: Test, span: Span, reach_s: float) -> Test:
         return test
     first = np.zeros(n, bool)
     first[start] = True
-    for at in span:
+    for at in instants:
         low, high = np.searchsorted(test.time, [at - reach_s, at + reach_s])
         first[low:high:fine] = True
     return replace(test, blocks=np.flatnonzero(first))
@@ -275,16 +270,21 @@ def repeat_gain(scores: Score, i: int, every: Sequence[int]) -> float:
     return a * (float(scores.u[i]) - a * float(np.sum(scores.V[i, others]))) - 0.5 * a**2 * float(scores.V[i, i])
 
 
-def instants_around(test: Test, at: float, reach_s: float) -> Array:
-    """Instants (s) near an instant, whole timing steps from the record's begin on and inside of it.
+def instants_around(test: Test, at: float, reach_s: float, steps: float = 1.0) -> Array:
+    """Instants (s) near an instant, whole timing steps from the record's begin on and inside of it, so many apart.
 
     To a hundredth of a step at least: names of events hold them, and no reading knows more.
     """
     t, step = test.time, timing_step(test)
     low, high = max(at - reach_s, t[0]), min(at + reach_s, t[-1])
-    count = int(min(GRID_POINTS, round((high - low) / step) + 1))
-    whole = t[0] + step * np.round((np.linspace(low, high, max(count, 1)) - t[0]) / step)
-    return np.unique(np.clip(np.round(whole, 2 - floor(log10(step))), t[0], t[-1]))
+    count = int(min(GRID_POINTS, round((high - low) / (steps * step)) + 1))
+    return np.unique(whole_instants(test, np.linspace(low, high, max(count, 1))))
+
+
+def whole_instants(test: Test, at: Array) -> Array:
+    """Instants (s) moved to whole timing steps inside the record."""
+    t, step = test.time, timing_step(test)
+    return np.clip(np.round(t[0] + step * np.round((at - t[0]) / step), 2 - floor(log10(step))), t[0], t[-1])
 
 
 def retimed(
@@ -307,17 +307,24 @@ def retimed(
         i for i in refits if i not in likely and hypotheses[i].log_bayes > least and _is_once(evidence, hypotheses[i])
     ]
     few = [hypotheses[i] for i in [*likely, *near[:RIVALS]][:FITTED]]
-    fits: dict[int, Fit] = {}
+    fits, sizes = dict[int, Fit](), dict[int, float]()
     for _ in range(MOVES):
         earlier, fits = fits, fits_of_events(evidence, few)
         due = {k: fit for k, fit in fits.items() if fit is not earlier.get(k)}  # about the same fit none moves again
-        new = moved_events(evidence, due, reach_s)
+        far = {k: size for k, fit in due.items() if is_far(size := fit.values[evidence.names[k]], sizes.get(k, 0.0))}
+        sizes |= far
+        new = moved_events(evidence, due, {k: reach_s for k in far})
         if not new:
             break
         priors: dict[Effect, float] = {e: evidence.causes[k].log_prior for k, e in new.items()}
         evidence = joined(evidence, priors, evidence.fit.values, list(new))
         few = [refit(evidence, h) if set(h.members) & set(new) else h for h in few]
     return evidence
+
+
+def is_far(size: float, other: float) -> bool:
+    """Is an event so much larger or smaller than another that its ends may be anywhere else?"""
+    return not 1.0 / ELSEWHERE < size / (other or np.inf) < ELSEWHERE
 
 
 def _is_once(evidence: Evidence, h: Weighed) -> bool:
@@ -342,14 +349,19 @@ def fits_of_events(evidence: Evidence, hypotheses: Sequence[Weighed]) -> dict[in
     return fits
 
 
-def moved_events(evidence: Evidence, fits: Mapping[int, Fit], reach_s: Mapping[str, float]) -> dict[int, During]:
-    """Events whose refits want other ends, or where none does further repeats, with these."""
+def moved_events(
+    evidence: Evidence, fits: Mapping[int, Fit], reach_s: Mapping[int, Mapping[str, float]]
+) -> dict[int, During]:
+    """Events whose refits want other ends, or where none does further repeats, with these.
+
+    reach_s : event -> test -> how far (s) an end may move; of others a few steps
+    """
 
     def moved(k: int) -> During:
         effect = evidence.effects[k]
         assert isinstance(effect, During)
         assert effect.event is not None
-        event = refit_ends(evidence, fits[k], effect, effect.event, reach_s)
+        event = refit_ends(evidence, fits[k], effect, effect.event, reach_s.get(k, {}))
         if event.name == effect.event.name:  # what lasts too long takes the room of its repeats
             event = further_repeats(evidence, fits[k], effect, event)
         return During.of(effect.base, event.name)
@@ -383,45 +395,120 @@ def throughout(evidence: Evidence, event: Event) -> bool:
 
 
 def refit_ends(evidence: Evidence, fit: Fit, effect: During, event: Event, reach_s: Mapping[str, float]) -> Event:
-    """The event with the ends that fit best about a refit, every span in turn, the others where they are."""
+    """The event with the ends that fit best about a refit: where they may be far off every span in turn, the others
+    where they are, then all of them together."""
     tests = {t.name: t for t in evidence.tests}
     spans = {t: list(each) for t, each in event.spans.items()}
-    for t, each in spans.items():
-        for i in range(len(each)):
-            each[i] = refit_span(fit, effect, tests[t], each, i, reach_s[t])
-    return Event.of(spans)
+    for t, reach in reach_s.items():
+        for i, (begin, end) in enumerate(spans.get(t, ())):
+            far = max(end - begin, STEERED * timing_step(tests[t]))  # tangents are not further off than it lasts
+            spans[t][i] = refit_span(fit, effect, tests[t], spans[t], i, min(reach, far))
+    return steered_ends(fit, effect, evidence.tests, Event.of(spans))
 
 
 def refit_span(fit: Fit, effect: During, test: Test, spans: Sequence[Span], i: int, reach_s: float) -> Span:
-    """Begin and end of the i-th of an event's spans in a test that fit best."""
+    """Begin and end of the i-th of an event's spans in a test that fit best, to some steps."""
     others = [*spans[:i], *spans[i + 1 :]]
+
+    amplitude = Unknowns((next(q for q in fit.unknowns.parameters if q.name == effect.name),))
+    size, fixed = amplitude.coordinates(fit.values), {**parameter_values(fit.network, {}), **fit.values}
 
     def misfits(best: Span, reach_s: float) -> Callable[[Span], float]:
         closer, near = closer_look(fit, test, best, reach_s, fit.values)
-        misfit, least = Misfit.create(closer, near, effect.name), np.inf
+        error = closer.error
 
         def of(span: Span) -> float:
-            nonlocal least
-            now = Event.of({test.name: [*others, span]}).name
-            left = misfit.of(with_condition(fit.network, effect.condition, now), least + WORSE)
-            least = min(least, left)
-            return left
+            now = with_condition(fit.network, effect.condition, Event.of({test.name: [*others, span]}).name)
+            try:
+                return minimise(now, [near], amplitude, size, fit.noise, fixed, 2, draft=True, error=error).objective
+            except NoSolution:
+                return float("inf")
 
         return of
 
     return closest_span(test, spans[i], reach_s, misfits)
 
 
+def steered_ends(fit: Fit, effect: During, tests: Sequence[Test], now: Event) -> Event:
+    """An event with all its ends moved where their tangents point, its size and all else with them: where that fits
+    worse half as far, until none moves by a step any more."""
+    closer, near = fit, list(tests)
+    for i, t in enumerate(tests):
+        if t.name in now.spans:
+            ends = np.ravel(now.spans[t.name]).tolist()
+            closer, near[i] = closer_look(closer, t, ends, STEERED * timing_step(t), fit.values)
+    p = len(fit.unknowns.parameters)
+
+    def state(e: Event, theta: Array) -> tuple[float, Array, Array]:
+        """Objective with such ends, and what tangents ask for: a step of all else, and of each end in timing steps."""
+        if not (size := fit.unknowns.values(theta)[effect.name]):  # nothing that could last longer
+            return float("inf"), theta, np.zeros(0)
+        pieces = [During.of(effect.base, piece.name) for piece in end_pieces(tests, e)]
+        network = extended(with_condition(fit.network, effect.condition, e.name), pieces)
+        far = STEERED * abs(size)
+        longer = [
+            replace(q, prior_sd=far, low=q.neutral - far, high=q.neutral + far)
+            for q in network.parameters[-len(pieces) :]
+        ]
+        unknowns, begin = Unknowns((*fit.unknowns.parameters, *longer)), np.append(theta, np.zeros(len(pieces)))
+        it = Iterate(network, near, unknowns, parameter_values(network, {}), begin, fit.noise, error=closer.error)
+        step = bounded_step(*it.slope(), it.theta, it.low, it.high) - it.theta
+        return it.objective, step[:p], step[p:] / size
+
+    part, theta = 1.0, fit.theta
+    least, more, moves = state(now, theta)
+    for _ in range(STEERS):
+        new = moved_ends(tests, now, part * moves)
+        if new == now:
+            break
+        with suppress(NoSolution):
+            left, then, onward = state(new, theta + part * more)
+            if left < least:
+                now, theta, least, more, moves, part = new, theta + part * more, left, then, onward, 1.0
+                continue
+        part *= 0.5
+    return now
+
+
+def end_pieces(tests: Sequence[Test], e: Event) -> list[Event]:
+    """For each end in turn, begin and end of each span, a step that the event would last longer if it moved."""
+    steps = {t.name: timing_step(t) for t in tests}
+    return [
+        Event.of({t: [piece]})
+        for t, step in steps.items()
+        for a, b in e.spans.get(t, ())
+        for piece in ((a - step, a), (b, b + step))
+    ]
+
+
+def moved_ends(tests: Sequence[Test], e: Event, longer: Array) -> Event:
+    """The event with each end moved outwards by so many steps, some at most; a span that would vanish or meet another
+    stays.
+
+    longer : as of `end_pieces`
+    """
+    out, moves = dict[str, list[Span]](), iter(np.clip(np.nan_to_num(longer), -STEERED, STEERED).reshape(-1, 2))
+    for t in [t for t in tests if t.name in e.spans]:
+        spans, step = list(e.spans[t.name]), timing_step(t)
+        for i, (begin, end) in enumerate(spans):
+            x, y = next(moves) * step
+            new, last = whole_instants(t, np.array([begin - x, end + y])).tolist(), spans[i - 1][1] if i else -np.inf
+            if last < new[0] < new[1] < (spans[i + 1][0] if i + 1 < len(spans) else np.inf):
+                spans[i] = new[0], new[1]
+        out[t.name] = spans
+    return Event.of(out)
+
+
 def closest_span(
     test: Test, best: Span, reach_s: float, misfits: Callable[[Span, float], Callable[[Span], float]]
 ) -> Span:
-    """Begin and end that fit best: first some instants around them, then others around the best of these, and so on to
-    every sample.
+    """Begin and end that fit best to some steps: first some instants around them, then others around the best of these,
+    and so on.
 
     misfits : of the best so far and a reach, what says how badly a span fits; each is run: what is open and has cooled
         a part down to the room shows no tangent of being open longer
     """
-    while reach_s >= 0.5 * timing_step(test):
+    while reach_s >= COARSEST * timing_step(test):
         misfit, results = misfits(best, reach_s), dict[Span, float]()
 
         def misfit_of(
@@ -432,7 +519,7 @@ def closest_span(
             return results[span]
 
         for moves in DIRECTIONS * 2:
-            steps = instants_around(test, best[0], reach_s) - best[0], instants_around(test, best[1], reach_s) - best[1]
+            steps = [instants_around(test, end, reach_s, COARSEST) - end for end in best]
             first, last = float(test.time[0]), float(test.time[-1])
             new = [(best[0] + d * moves[0], best[1] + d * moves[1]) for d in steps[moves[0] == 0]]
             best = min([best, *(x for x in new if first <= x[0] and x[1] <= last)], key=misfit_of)
@@ -452,74 +539,6 @@ def with_condition(network: Network, old: str, new: str) -> Network:
         return x if (law := changed(x.law)) == x.law else replace(x, law=law)
 
     return replace(network, links=tuple(map(instead, network.links)), sources=tuple(map(instead, network.sources)))
-
-
-@dataclass(frozen=True)
-class Misfit:
-    """How well a fit's model does in one test if something in it is another, all else and the model error moved along
-    by their tangents.
-
-    free : the parameter whose tangent is another then, too, the k-th of them;  here : of the test's segments
-    H : curvature;  b : steepest descent;  of what the other tests say, and of this one without the k-th
-    """
-
-    fit: Fit
-    test: Test
-    free: Parameter
-    here: Sequence[Whitened]
-    H: Array
-    b: Array
-
-    @classmethod
-    def create(cls, fit: Fit, test: Test, amplitude: str) -> Misfit:
-        """amplitude : that may become about twice as large, or nothing: further its tangent does not reach"""
-        (theta, sd), k = fit_prior(fit), fit.unknowns.names.index(amplitude)
-        theta[k], sd[k] = 0.0, abs(theta[k])
-        weight = sd**-2.0
-        H, b, here = np.diag(weight), -weight * theta, []
-        for s, x in zip(fit.parts, whitened(fit), strict=True):
-            at, some = x.at[:-1], slice(None)
-            if s.test == test.name:
-                some = at != k
-                here.append(Whitened(at[some], x.X[:, :-1][:, some], x.XX))
-            else:
-                b[at] += x.XX[:-1, -1]
-            H[np.ix_(at[some], at[some])] += x.XX[:-1, :-1][some][:, some]
-        return cls(fit, test, fit.unknowns.parameters[k], here, H, b)
-
-    def of(self, network: Network, most: float = np.inf) -> float:
-        """Of another network with the same parameters: half the squares (nats) left; inf where it runs away.
-
-        most : nats beyond which it is enough to know that it is more
-        """
-        values = {**parameter_values(network, {}), **self.fit.values}
-        left, more = self.moved(network, values, 0.0)
-        far = abs(more) > TANGENT_RANGE * abs(values[self.free.name])  # a lid that is open has another tangent
-        if far and left < most:
-            left, _ = self.moved(network, values, more)
-        return left
-
-    def moved(self, network: Network, values: Values, more: float) -> tuple[float, float]:
-        """Half the squares (nats) left by tangents at an amplitude of so much more, and how much more they ask for."""
-        H, b, square = self.H.copy(), self.b.copy(), 0.0
-        k = self.fit.unknowns.names.index(self.free.name)
-        size = float(np.clip(values[self.free.name] + more, self.free.low, self.free.high))
-        more = size - values[self.free.name]
-        b[k] -= (strain := more * H[k, k])
-        try:
-            parts = segments(network, [self.test], {**values, self.free.name: size}, [self.free])
-        except NoSolution:
-            return float("inf"), 0.0
-        for s, (at, X, _) in zip(parts, self.here, strict=True):
-            z, r = self.fit.noise.whiten(s, np.column_stack([s.J, s.r])).T
-            H[k, k] += z @ z
-            H[k, at] += (both := z @ X)
-            H[at, k] += both
-            b[at] += r @ X
-            b[k] += z @ r
-            square += float(r @ r)
-        step = np.linalg.solve(H, b)
-        return 0.5 * (square + strain * more - float(b @ step)), more + float(step[k])
 
 
 def with_spans(network: Network, effect: During, test: Test, spans: Sequence[Span]) -> Network:
@@ -575,28 +594,55 @@ def _alike(span: Span, lengths: Sequence[float], slack: float) -> bool:
 def _first_spans(
     network: Network, test: Test, values: Values, effect: During, noise: Noise, usual: float, others: Sequence[Span]
 ) -> tuple[float, list[Span]]:
-    """Stretches that tangents about the others promise most of, and how far (s) their ends may be off."""
+    """Stretches that tangents about the others promise most of, and how far (s) their ends may be off: first anywhere,
+    then closer in the best of these."""
     begin, end = float(test.time[0]), float(test.time[-1])
     count = int(np.clip(np.ceil((end - begin) / (0.5 * usual)), 2, MOST_KNOTS))
-    knots = np.linspace(begin, end, count + 1)
-    now = with_spans(network, effect, test, others)
-    steps = [During.of(effect.base, Event.of({test.name: [(float(t), end + 1.0)]}).name) for t in knots[:-1]]
-    larger = extended(now, steps)
-    parts = segments(larger, [test], parameter_values(larger, values), larger.parameters[-len(steps) :])
-    u, V = np.zeros(count + 1), np.zeros((count + 1, count + 1))
+    knots, network = np.linspace(begin, end, count + 1), with_spans(network, effect, test, others)
+    gains = _promised_gains(network, test, values, effect, noise, usual, others, knots)
+    if not (first := sorted(gains, key=lambda x: -gains[x][0])[:FIRST_RUNS]):
+        return 0.0, []
+    near = [np.linspace(a - 0.5 * usual, b + 0.5 * usual, MOST_KNOTS // len(first)) for a, b in first]
+    spacing, knots = float(max(x[1] - x[0] for x in near)), np.unique(whole_instants(test, np.concatenate(near)))
+    gains = _promised_gains(network, test, values, effect, noise, usual, others, knots)
+    best: list[Span] = []
+    for order in (0, 1):
+        apart: list[Span] = []
+        for a, b in sorted(gains, key=lambda x: -gains[x][order]):
+            if _alike((a, b), [usual], spacing) and all(b <= c or d <= a for c, d in apart):
+                apart.append((a, b))
+        best += apart[:FIRST_RUNS]
+    return spacing, best
+
+
+def _promised_gains(
+    network: Network,
+    test: Test,
+    values: Values,
+    effect: During,
+    noise: Noise,
+    usual: float,
+    others: Sequence[Span],
+    knots: Array,
+) -> dict[Span, tuple[float, float]]:
+    """Stretches between knots about as long as the others, or from knot to knot where these are further apart -> what
+    tangents promise (nats) of the size there is or less, and of all of it; none that promises nothing."""
+    end, steps = float(test.time[-1]) + 1.0, knots[:-1].tolist()
+    effects = [During.of(effect.base, Event.of({test.name: [(t, end)]}).name) for t in steps]
+    larger = extended(network, effects)
+    parts = segments(larger, [test], parameter_values(larger, values), larger.parameters[-len(effects) :])
+    u, V = np.zeros(knots.size), np.zeros((knots.size, knots.size))
     for s in parts:
         X = values[effect.name] * noise.whiten(s, s.J)
         u[:-1] += X.T @ noise.whiten(s, s.r[:, None])[:, 0]
         V[:-1, :-1] += X.T @ X
-    spacing = knots[1] - knots[0]
-    i, j = (k.ravel() for k in np.meshgrid(np.arange(count), np.arange(1, count + 1), indexing="ij"))
+    i, j = np.triu_indices(knots.size, 1)
     length = knots[j] - knots[i]
-    short = (j == i + 1) & (length > usual)  # a stretch between two knots that are further apart
     pull, felt = u[i] - u[j], V[i, i] + V[j, j] - 2.0 * V[i, j]
     part = np.clip(pull / np.maximum(felt, 1e-12), 0.0, 1.0)  # a large one does less than tangents say
     gain = part * pull - 0.5 * part**2 * felt
-    free = (j > i) & np.array([not any(a < knots[y] and knots[x] < b for a, b in others) for x, y in zip(i, j)])
-    free &= short | (np.abs(length - usual) < LENGTHS * usual + spacing)
-    order = [k for k in np.argsort(-np.where(free, gain, -np.inf)) if free[k] and gain[k] > 0.0][:FIRST_RUNS]
-    middle, half = 0.5 * (knots[i] + knots[j]), 0.5 * np.where(short, usual, length)
-    return float(spacing), [(float(middle[k] - half[k]), float(middle[k] + half[k])) for k in order]
+    free = np.array([not any(a < knots[y] and knots[x] < b for a, b in others) for x, y in zip(i, j)])
+    short = (j == i + 1) & (length > usual)  # a stretch between two knots that are further apart
+    free &= (short | (np.abs(length - usual) < LENGTHS * usual + knots[1] - knots[0])) & (gain > 0.0)
+    every = zip(knots[i[free]], knots[j[free]], gain[free], (pull - 0.5 * felt)[free], strict=True)
+    return {(float(a), float(b)): (float(some), float(whole)) for a, b, some, whole in every}

@@ -19,23 +19,26 @@ from validation.inference.refit import laplace
 DAY, STEP_S = 10800.0, 10.0
 
 
-@pytest.mark.parametrize(
-    "size", [5.0, 40.0]
-)  # W/K; by the larger one the body is halfway to the room's temperature at the end
-def test_ends_in_a_day_are_found_to_the_sample(size):
-    """Begun some minutes off, which is where windows of a long record put them; blocks of the fit are one minute."""
-    begin = 5000.0
-    end = 5090.0
+def day_case(spans, size, length=DAY):
+    """A day of a sample every ten seconds in which two bodies cool more while a lid is open."""
     rng, net = np.random.default_rng(1), two_bodies()
-    lid = effect(f"convection.constant@body in {Event.of({'day': [(begin, end)]}).name}")
-    truth, time = lid.extend(net), np.arange(0.0, DAY, STEP_S)
-    load = rng.uniform(0.3, 1.0, 10)[(time / (DAY / 10.0)).astype(int)]
+    lid = effect(f"convection.constant@body in {Event.of({'day': spans}).name}")
+    truth, time = lid.extend(net), np.arange(0.0, length, STEP_S)
+    load = rng.uniform(0.3, 1.0, 10)[(time / (length / 10.0)).astype(int)]
     test = Test("day", "calibrate", time, {"load": load}, {"ambient": np.full_like(time, 20.0)}, (), 20.0)
     rows = [net.places[p].mean for p in ("body", "core")]
     y = simulate(truth, Record(time, test.signals, test.boundaries, 20.0), {lid.name: size}, rows).y
     y = y + 0.05 * rng.standard_normal(y.shape)
     channels = tuple(Channel(p, p, r, y[:, i], 0.3) for i, (p, r) in enumerate(zip(("body", "core"), rows)))
-    case = Case("day", Model(net), (replace(test, channels=channels),))
+    return Case("day", Model(net), (replace(test, channels=channels),))
+
+
+@pytest.mark.parametrize(
+    "size", [5.0, 40.0]
+)  # W/K; by the larger one the body is halfway to the room's temperature at the end
+def test_ends_in_a_day_are_found_to_the_sample(size):
+    """Begun some minutes off, which is where windows of a long record put them; blocks of the fit are one minute."""
+    case = day_case([(5000.0, 5090.0)], size)
     wrong = effect("convection.constant@body in day:4700-5400s")
     evidence, where = scored(case, [wrong], calibrated_case(case)), wrong.event
     for _ in range(3):
@@ -44,6 +47,26 @@ def test_ends_in_a_day_are_found_to_the_sample(size):
         moved = effect(f"convection.constant@body in {where.name}")
         evidence = scored(case, [moved], evidence.fit)
     assert np.array(where.spans["day"]) == pytest.approx(np.array([(5000.0, 5090.0)]), abs=2.0 * STEP_S)
+
+
+@pytest.mark.parametrize("wrong", ["4960-5050", "5050-5140", "4960-5140"])
+def test_ends_some_samples_off_are_found_by_tangents_alone(wrong):
+    """The size and the bodies' capacities bend to wrong ends, and move with them."""
+    case = day_case([(5000.0, 5090.0)], 17.0)
+    off = effect(f"convection.constant@body in day:{wrong}s")
+    evidence = scored(case, [off], calibrated_case(case))
+    where = refit_ends(evidence, laplace(evidence, Weighed((0,))).fit, off, off.event, {})
+    assert np.array(where.spans["day"]) == pytest.approx(np.array([(5000.0, 5090.0)]), abs=STEP_S)
+
+
+def test_a_repeat_half_as_long_is_found_in_a_long_day():
+    """Two openings of two minutes are known; one of a minute lies between knots a quarter of an hour apart."""
+    spans = [(6000.0, 6130.0), (14000.0, 14130.0), (37050.0, 37120.0)]
+    case = day_case(spans, 6.0, 8.0 * DAY)
+    two = effect(f"convection.constant@body in {Event.of({'day': spans[:2]}).name}")
+    evidence = scored(case, [two], calibrated_case(case))
+    more = further_repeats(evidence, laplace(evidence, Weighed((0,))).fit, two, two.event)
+    assert np.array(more.spans["day"]) == pytest.approx(np.array(spans), abs=4.0 * STEP_S)
 
 
 def test_a_closer_look_has_the_same_readings_in_shorter_blocks():
