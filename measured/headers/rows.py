@@ -150,7 +150,7 @@ def called(names: list[str], before: Sequence[Row]) -> list[str]:
     line as "T1 = winding"; the largest and the mean of one have its words."""
     labels = [_bare(split_unit(name)[0]) for name in names]
     lines = (
-        [*m.groups()] if len(row) == 1 and (m := EXPLAINED.match(str(row[0]))) else row for row in map(trimmed, before)
+        [*m.groups()] if row and (m := EXPLAINED.match(str(row[0]))) else row for row in map(trimmed, before)
     )
     table = {label: row for row in lines if len(row) > 1 and (label := _bare(str(row[0]))) in labels}
     if len(table) < 2 or any(roles_of(name) for name, label in zip(names, labels, strict=True) if label in table):
@@ -164,7 +164,7 @@ def called(names: list[str], before: Sequence[Row]) -> list[str]:
     heads = [str(cell).strip() for row in before if len(row) == len(scores) for cell in row]
     by_name = (i % len(scores) for i, head in enumerate(heads) if {*tokens(head)} & {*UNIT_NAMES})
     at = next(by_name, next((j for j, of in enumerate(cells) if j and all(map(is_unit, of))), len(scores)))
-    units = {label: f" [{str(row[at]).strip()}]" for label, row in table.items() if at < len(row)}
+    units = {label: f" [{str(row[at]).strip(' []()')}]" for label, row in table.items() if at < len(row)}
     parts = zip(names, labels, strict=True)
     return [f"{name} {words.get(label, '')}{units.get(label, '')}".strip() for name, label in parts]
 

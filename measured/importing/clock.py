@@ -528,11 +528,11 @@ def _since_first(seconds: Array, columns: tuple[str, ...], words: str) -> Clock:
 
 def _of_day(source: Source, column: str) -> Clock:
     """h:mm:ss or m:ss, with fractions; past midnight it goes on. Two numbers alone may be hours or minutes."""
-    cells, label = source.cells[column], source.labels[column].lower() + source.units[column].lower()
+    cells, label = source.cells[column], column.lower() + source.units[column].lower()
     parsed = [_parts(c) for c in cells]
     read = [p for p in parsed if p]
     two = all(len(p) == 2 for p in read)
-    texts = [str(c).strip() for c in cells[:SAMPLE] if c is not None]
+    texts = [str(c).strip() for c, p in zip(cells[:SAMPLE], parsed) if p]  # not remarks under the readings
     halves = any(text.lower().endswith("m") for text in texts)
     hours_in_label, minutes_in_label = (
         "hh" in label or "h:m" in label or halves or bool(DAY_NAMES & set(tokens(label))),

@@ -381,6 +381,7 @@ def _read(source: Source, every: list[Guess], target: Target) -> list[Guess]:
     if any(is_spoken(hot[g.column], MACHINE) or roles_of(hot[g.column]) for g in rest):
         warmest = np.inf
     tested = any(is_spoken(hot[g.column], SPOT) for g in rest)
+    tested |= any(np.nanmax(in_memory(source, g)) > warmest for g in every if g.column in instruments)
     for i, g in enumerate(every):
         if g.column not in instruments:
             continue
@@ -746,10 +747,7 @@ def single(guesses: list[Guess], target: Target, labels: Mapping[str, str]) -> l
             if g.feeds and is_setpoint(g.column):
                 out[g.column] = g.also(DEMAND)
             continue
-        of_part = g.quantity == "power" and (
-            roles_of(g.column) or is_spoken(g.column, ROOMS) or LOSS & {*tokens(labels[owner[key]])}
-        )
-        if g.feeds and (g.feeds not in target.inputs or of_part) and not is_setpoint(g.column):  # of copper or iron
+        if g.feeds and (g.feeds not in target.inputs or g.quantity == "power") and not is_setpoint(g.column):
             stem, _, unit = input_name(g).rpartition("_")
             names = (f"{stem}{end}_{unit}" for end in ("", *(f"_{i}" for i in range(2, len(guesses) + 2))))
             out[g.column] = replace(g, feeds=next(n for n in names if owner.setdefault(n, g.column) == g.column))
