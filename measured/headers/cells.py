@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from datetime import date, datetime, time, timedelta
 
 from measured.headers.layout import MISSING
-from measured.headers.words import VOCABULARY, is_time, quantities_of, roles_of, tokens
+from measured.headers.words import VOCABULARY, is_time, quantities_of, roles_of
 
 NUMBER = re.compile(r"[-+]?(\d+([.,]\d*)?|[.,]\d+)([eE][-+]?\d+)?")
 # Digits in threes: with a decimal part, in several groups, or with a sign between them that is not a decimal sign.
@@ -30,6 +30,7 @@ _MONTH = f"(?:{'|'.join(' '.join(VOCABULARY['months'].values()).split())})[^\\W\
 DATE = re.compile(
     r"(?:[^\W\d_]{2,10}[.,]{0,2}\s+)?"  # the day of the week
     r"(\d{4}[-/.年]\s?\d{1,2}[-/.月]\s?\d{1,2}[.日]?|\d{1,2}[-/.]\s?\d{1,2}[-/.]\s?\d{2,4}\.?(?=\D|$)|(?:19|20)\d{6}(?:[T:]?\d{4,6})?(?=\D|$)"
+    r"|\d{1,2}[-/.]\s?\d{1,2}\.?(?=\s+\d{1,2}:\d\d)"  # 03/28 10:05, without a year
     rf"|\d{{1,2}}[-/. ]{{1,2}}{_MONTH}\.?[-/., ]{{1,2}}\d{{2,4}}|{_MONTH}\.?\s\d{{1,2}},?(\s\d{{4}})?)"
     r"([T ,].*|:\d\d:.*)?",
     re.IGNORECASE,
@@ -149,6 +150,7 @@ INNER = re.compile(r"^([^,]+),\s*([^\s,()]+)\s*(\(.+\))$")  # Temp, °F (LGR S/N
 SERIAL = re.compile(r"(?:LGR |SEN )?S/N: ?\w+(?:, )?")  # of a logger and its sensor: LGR is not a bearing
 BEFORE = re.compile(r"^(?:M\d\d:\s*|(?=[°º]))(\S+)\s+(\S.*)$")  # M00: °C Wicklung, °C Wicklung
 BARS = re.compile(r'^"?([^|"]+)"?\|"?([^|"]*)"?(?:\|[^|]*)+$')  # MotorTemp|"C"|0.0|300.0|5
+SMALL = {"c": "temperature", "f": "temperature", "w": "power", "v": "voltage", "a": "current"}  # p_loss_w
 RATIO = re.compile(r"^(.*[^\W_])_(?!per_)([a-z]+\d?|1)(?:_per)?_(s|sec(?:ond)?|min(?:ute)?|h(?:ou)?r?)$")  # flow_l_s
 JOINT = re.compile(r"([Tt]ime)(US|MS|NS)")  # of flight controllers
 TRAILING = re.compile(r"^(.*?)(?:_|\s*/\s*|\s+in\s+|[,:]\s*|\s+)((?:deg(?:rees?)?[ _])?[^\s_/]+(?:/[^\W_A-Z]+)?)$")
@@ -177,7 +179,7 @@ def split_unit(header: str) -> tuple[str, str]:
     if (
         (last := TRAILING.match(header))
         and last[1]
-        and (_surely(last[2]) or (last[2] in ("c", "f") and tokens(last[1]) in (("temp",), ("temperature",))))
+        and (_surely(last[2]) or SMALL.get(last[2], "") in quantities_of(last[1])[:1])
         and not (unit_of(last[2]) in TIMES and not is_time(last[1]) and (roles_of(last[1]) or quantities_of(last[1])))
         and not re.search(r"\([^)]*$|\[[^]]*$", last[1])
     ):

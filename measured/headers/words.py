@@ -83,7 +83,7 @@ def quantities_of(name: str) -> list[str]:
     }
     spoken = {w for w in spoken if len(w) > 1 and any(w in terms for terms in QUANTITY.values())} or spoken
     quantities = [q for q, terms in QUANTITY.items() if spoken & terms]
-    if quantities == ["power"] and spoken == {"p"} and name[0] == "p":
+    if quantities == ["power"] and not spoken & QUANTITY["power"] - {"p"} and name[0] == "p":
         return []
     long = {q: [k for k in terms if len(k) > SHORTEST or k[0] >= IDEOGRAPHS] for q, terms in QUANTITY.items()}
     inside = {q: max((len(k) for k in terms for w in words if k in w), default=0) for q, terms in long.items()}

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -157,6 +157,7 @@ CERTAIN = (
     "--set gives it",
 )  # nothing is lost
 REMARK_WORDS = READ | SETPOINT | frozenset().union(*QUANTITY.values(), *ROLES.values())  # in brackets no unit
+TURNING = ("speed", "torque")  # of a machine
 ELSEWHERE = frozenset({"resistance", "back_emf", "time", "fraction"})  # units that no plain column is guessed from
 
 
@@ -276,6 +277,16 @@ def _without_functions(source: Source, every: list[Guess]) -> list[Guess]:
     return out
 
 
+def may_wind(columns: Iterable[tuple[str, Guess]]) -> bool:
+    """May what is tested have a winding: does it turn, or does no name tell of a room or a battery?
+
+    columns : labels and what was guessed of each
+    """
+    every = [*columns]
+    named = any(INDOORS in g.doubt or is_spoken(label, ROOMS | SUPPLY) for label, g in every)
+    return not named or any(g.quantity in TURNING or is_spoken(label, MACHINE) for label, g in every)
+
+
 def _quickest(source: Source, every: list[Guess], target: Target) -> list[Guess]:
     """With a doubt at those of the stator, or that follow the heat fastest, where none is of a winding by its name."""
     hot = {
@@ -283,7 +294,8 @@ def _quickest(source: Source, every: list[Guess], target: Target) -> list[Guess]
     }
     heats = [source.numbers(g.column) for q in FACTORS for g in every if g.feeds and g.quantity == q]
     first = not target.places  # of a network that is to be made from the columns
-    if any(Role.WINDING in roles for roles in hot.values()):
+    wound = may_wind((source.labels[g.column], g) for g in every)
+    if not wound or any(Role.WINDING in roles for roles in hot.values()):
         return every
     headers = target.places_by_header.keys()
     if stators := {c for c in hot if is_stator(label := source.labels[c]) and (first or label in headers)}:
@@ -378,10 +390,10 @@ def _read(source: Source, every: list[Guess], target: Target) -> list[Guess]:
         every = [replace(g, place=edges[0], doubt=AS_ROOM) if g.column == coldest else g for g in every]
         instruments -= {coldest}
     warmest = max((np.nanmax(in_memory(source, g)) for g in rest), default=np.inf)
-    if any(is_spoken(hot[g.column], MACHINE) or roles_of(hot[g.column]) for g in rest):
-        warmest = np.inf
-    tested = any(is_spoken(hot[g.column], SPOT) for g in rest)
-    tested |= any(np.nanmax(in_memory(source, g)) > warmest for g in every if g.column in instruments)
+    named = any(is_spoken(hot[g.column], MACHINE) or roles_of(hot[g.column]) for g in rest)
+    warmest = np.inf if named else warmest
+    turns = any(g.quantity in TURNING for g in every)
+    tested = any(is_spoken(hot[g.column], SPOT) for g in rest) or (bool(rest) and not (named or turns))
     for i, g in enumerate(every):
         if g.column not in instruments:
             continue
