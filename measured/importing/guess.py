@@ -759,7 +759,8 @@ def single(guesses: list[Guess], target: Target, labels: Mapping[str, str]) -> l
             if g.feeds and is_setpoint(g.column):
                 out[g.column] = g.also(DEMAND)
             continue
-        if g.feeds and (g.feeds not in target.inputs or g.quantity == "power") and not is_setpoint(g.column):
+        of_part = g.quantity == "power" and (NO_UNIT not in g.doubt or roles_of(g.column) or is_spoken(g.column, ROOMS))
+        if g.feeds and (g.feeds not in target.inputs or of_part) and not is_setpoint(g.column):  # of copper or iron
             stem, _, unit = input_name(g).rpartition("_")
             names = (f"{stem}{end}_{unit}" for end in ("", *(f"_{i}" for i in range(2, len(guesses) + 2))))
             out[g.column] = replace(g, feeds=next(n for n in names if owner.setdefault(n, g.column) == g.column))
