@@ -17,7 +17,7 @@ GROUPED = re.compile(
 )
 ONE_GROUP = re.compile(r"[-+]?[1-9]\d{0,2}([.,])\d{3}")
 DECIMAL = re.compile(r"^[-+]?\d*([.,])\d+(?:[eE][-+]?\d+)?$")
-WITH_UNIT = re.compile(r"([-+]?\d+(?:[.,]\d+)?)\s*([^\d\s.,:;+-][^\d\s]{0,8})")
+WITH_UNIT = re.compile(r"([-+]?\d+(?:[.,]\d+)?(?:[eE][-+]?\d+)?)\s*([^\d\s.,:;+-][^\d\s]{0,8})")
 # 10:05, 1:10:05.5 and 10:05:00 pm; 3 days 10:05:00 and 3.10:05:00 of a span of time; PT1H10M5S.
 CLOCK = re.compile(
     r"(?:(?P<days>\d+)(?:\s*d(?:ays?)?,?\s*|[.\s]))?(?P<first>\d{1,4}):(?P<second>\d{2}(?:[.,]\d+)?)"
@@ -184,6 +184,9 @@ def split_unit(header: str) -> tuple[str, str]:
         and not re.search(r"\([^)]*$|\[[^]]*$", last[1])
     ):
         return last[1].strip(), unit_of(last[2])
+    front, _, rest = header.partition(" ")
+    if len(front) > 1 and _surely(front) and quantities_of(rest) and unit_of(front) not in TIMES:  # kW Loss
+        return rest.strip(), unit_of(front)
     joint = JOINT.fullmatch(header)
     return (joint[1], joint[2].lower()) if joint else (header.strip(), "")
 

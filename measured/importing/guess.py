@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import re
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
@@ -87,7 +88,7 @@ OTHER_UNITS = {  # of loggers, that no table of a sheet lists: for pint
     "temperature": ("mK",),
     "current": ("uA",),
     "voltage": ("uV",),
-    "power": ("uW", "mW", "MW", "hp", "metric_horsepower"),
+    "power": ("uW", "mW", "MW", "BTU/hour", "hp", "metric_horsepower"),
     "torque": ("mN*m", "cN*m", "lbf*ft"),
     "speed": ("krpm", "deg/s"),
     "water_flow": ("l/h", "l/s", "gallon/min", "ml/min", "ml/s"),
@@ -119,6 +120,7 @@ WHOLE = "names no part: the winding?"
 BY_LETTERS = "by its letters alone"
 HARDLY = "hardly warms: taken as the room"
 SEVERAL = "of the first of several machines, by their numbers?"
+NUMBERED_MACHINE = "of one of several machines, by its number: a file of each?"
 UNKNOWN = "unknown"  # of a unit
 RELATIVE = "relative to a nominal"
 OF_WHAT = "a share, by its unit alone: of what?"
@@ -353,7 +355,11 @@ def _with_switches(source: Source, every: list[Guess]) -> list[Guess]:
 
 
 def _of_one(source: Source, every: list[Guess]) -> list[Guess]:
-    """Of the first machine, and a doubt, where speeds differ by a number alone."""
+    """Of the first machine, and a doubt, where speeds differ by a number alone; a doubt at all that are numbered."""
+    words = {g.column: itertools.pairwise(tokens(source.labels[g.column])) for g in every if g.place}
+    numbers = {c: n for c, pairs in words.items() for word, n in pairs if word in MACHINE and n.isdigit()}
+    if len({*numbers.values()}) > 1:
+        every = [g.also(NUMBERED_MACHINE) if g.column in numbers else g for g in every]
     stems = {g.column: (g.quantity, *filter(str.isalpha, tokens(source.labels[g.column]))) for g in every if g.feeds}
     lost = stems.keys() - {stem: column for column, stem in reversed(stems.items())}.values()
     if not any(stems[column][0] == "speed" for column in lost):

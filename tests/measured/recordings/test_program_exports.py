@@ -18,9 +18,11 @@ from measured.importing.guess import (
     BY_READINGS,
     DEAD,
     INDOORS,
+    NUMBERED_MACHINE,
     OF_INSTRUMENT,
     OF_TESTED,
     guesses,
+    in_memory,
 )
 from thermoscope.commands.test.new import first_model
 
@@ -356,3 +358,23 @@ def test_a_unit_of_a_channel_by_any_name_and_instants_beside_it(tmp_path):
         )
     [(source, clock)] = read_runs(tmp_path / "a.tdms")
     assert (source.units["Coil"], source.notes, clock.end_s) == ("Deg C", (), pytest.approx(T[-1]))
+
+
+def test_cells_in_powers_of_ten_have_their_units_too(tmp_path):
+    lines = ["Time [s]\t0 Coil\t1 Air", *(f"{t:g}\t{w:+.5E} C\t{a:+.5E} C" for t, w, a in zip(T, W, A))]
+    found, source = read(tmp_path, "\n".join(lines) + "\n", "a.txt")
+    assert goes(found) == {"0 Coil": "0-coil", "1 Air": "ambient"}
+    assert source.numbers("0 Coil") == pytest.approx(W, rel=1e-5)
+
+
+def test_a_unit_may_stand_before_a_name_or_be_of_the_old_world(tmp_path):
+    assert split_unit("kW Loss") == ("Loss", "kW")
+    assert split_unit("ms today") == ("ms today", "")
+    found, source = read(tmp_path, "t [s],T_coil [C],Heater (BTU/h)\n" + body(T, W, 3412.14 * J / 9))
+    assert found["Heater (BTU/h)"].feeds == "power_W"
+    assert in_memory(source, found["Heater (BTU/h)"]).max() == pytest.approx(1000.0, rel=1e-3)
+
+
+def test_two_machines_in_one_table_are_doubted(tmp_path):
+    found, _ = read(tmp_path, "t [s],Motor 1 coil [C],Motor 2 coil [C],Air [C],I [A]\n" + body(T, W, H, A, J))
+    assert [NUMBERED_MACHINE in g.doubt for g in found.values()] == [True, True, False, False]
