@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from datetime import date, datetime, time, timedelta
 
 from measured.headers.layout import MISSING
-from measured.headers.words import VOCABULARY, is_time, quantities_of, roles_of
+from measured.headers.words import QUANTITY, VOCABULARY, is_time, quantities_of, roles_of, tokens
 
 NUMBER = re.compile(r"[-+]?(\d+([.,]\d*)?|[.,]\d+)([eE][-+]?\d+)?")
 # Digits in threes: with a decimal part, in several groups, or with a sign between them that is not a decimal sign.
@@ -150,7 +150,10 @@ INNER = re.compile(r"^([^,]+),\s*([^\s,()]+)\s*(\(.+\))$")  # Temp, °F (LGR S/N
 SERIAL = re.compile(r"(?:LGR |SEN )?S/N: ?\w+(?:, )?")  # of a logger and its sensor: LGR is not a bearing
 BEFORE = re.compile(r"^(?:M\d\d:\s*|(?=[°º]))(\S+)\s+(\S.*)$")  # M00: °C Wicklung, °C Wicklung
 BARS = re.compile(r'^"?([^|"]+)"?\|"?([^|"]*)"?(?:\|[^|]*)+$')  # MotorTemp|"C"|0.0|300.0|5
-SMALL = {"c": "temperature", "f": "temperature", "w": "power", "v": "voltage", "a": "current"}  # p_loss_w
+SMALL = {  # p_loss_w, but not T_f
+    unit: QUANTITY[of]
+    for unit, of in (("c", "temperature"), ("f", "temperature"), ("w", "power"), ("v", "voltage"), ("a", "current"))
+}
 RATIO = re.compile(r"^(.*[^\W_])_(?!per_)([a-z]+\d?|1)(?:_per)?_(s|sec(?:ond)?|min(?:ute)?|h(?:ou)?r?)$")  # flow_l_s
 JOINT = re.compile(r"([Tt]ime)(US|MS|NS)")  # of flight controllers
 TRAILING = re.compile(r"^(.*?)(?:_|\s*/\s*|\s+in\s+|[,:]\s*|\s+)((?:deg(?:rees?)?[ _])?[^\s_/]+(?:/[^\W_A-Z]+)?)$")
@@ -179,7 +182,7 @@ def split_unit(header: str) -> tuple[str, str]:
     if (
         (last := TRAILING.match(header))
         and last[1]
-        and (_surely(last[2]) or SMALL.get(last[2], "") in quantities_of(last[1])[:1])
+        and (_surely(last[2]) or any(len(w) > 1 and w in SMALL.get(last[2], ()) for w in tokens(last[1])))
         and not (unit_of(last[2]) in TIMES and not is_time(last[1]) and (roles_of(last[1]) or quantities_of(last[1])))
         and not re.search(r"\([^)]*$|\[[^]]*$", last[1])
     ):

@@ -16,6 +16,7 @@ from lumped.model.quantities import AIR, INPUTS, LIQUID, USUAL
 from lumped.schemas.bounds import COLDEST, HOTTEST
 from measured.headers.cells import is_unit, unit_of
 from measured.headers.words import (
+    BATTERY,
     CABINET,
     EXTREME,
     INLET,
@@ -285,7 +286,7 @@ def may_wind(columns: Iterable[tuple[str, Guess]]) -> bool:
     columns : labels and what was guessed of each
     """
     every = [*columns]
-    named = any(INDOORS in g.doubt or is_spoken(label, ROOMS | SUPPLY) for label, g in every)
+    named = any(INDOORS in g.doubt or is_spoken(label, ROOMS | BATTERY) for label, g in every)
     return not named or any(g.quantity in TURNING or is_spoken(label, MACHINE) for label, g in every)
 
 

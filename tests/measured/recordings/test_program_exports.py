@@ -317,6 +317,7 @@ def test_compounds_with_a_joint_and_german_letters_spelled_out_are_words():
 def test_a_small_letter_is_the_unit_of_the_quantity_before_it():
     assert split_unit("loss_w") == ("loss", "W")
     assert split_unit("temp_c") == ("temp", "degC")
+    assert split_unit("T_f") == ("T_f", "")
     assert split_unit("T_coil_w") == ("T_coil_w", "")
 
 
