@@ -286,8 +286,8 @@ def may_wind(columns: Iterable[tuple[str, Guess]]) -> bool:
     columns : labels and what was guessed of each
     """
     every = [*columns]
-    named = any(INDOORS in g.doubt or is_spoken(label, ROOMS | BATTERY) for label, g in every)
-    return not named or any(g.quantity in TURNING or is_spoken(label, MACHINE) for label, g in every)
+    other = any(INDOORS in g.doubt or is_spoken(label, ROOMS | BATTERY) for label, g in every)
+    return not other or any(g.quantity in TURNING or is_spoken(label, MACHINE) for label, g in every)
 
 
 def _quickest(source: Source, every: list[Guess], target: Target) -> list[Guess]:
@@ -397,10 +397,10 @@ def _read(source: Source, every: list[Guess], target: Target) -> list[Guess]:
         every = [replace(g, place=edges[0], doubt=AS_ROOM) if g.column == coldest else g for g in every]
         instruments -= {coldest}
     warmest = max((np.nanmax(in_memory(source, g)) for g in rest), default=np.inf)
-    named = any(is_spoken(hot[g.column], MACHINE) or roles_of(hot[g.column]) for g in rest)
-    warmest = np.inf if named else warmest
+    has_name = any(is_spoken(hot[g.column], MACHINE) or roles_of(hot[g.column]) for g in rest)
+    warmest = np.inf if has_name else warmest
     turns = any(g.quantity in TURNING for g in every)
-    tested = any(is_spoken(hot[g.column], SPOT) for g in rest) or (bool(rest) and not (named or turns))
+    tested = any(is_spoken(hot[g.column], SPOT) for g in rest) or (bool(rest) and not (has_name or turns))
     for i, g in enumerate(every):
         if g.column not in instruments:
             continue
