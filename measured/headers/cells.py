@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from datetime import date, datetime, time, timedelta
 
 from measured.headers.layout import MISSING
-from measured.headers.words import VOCABULARY, is_time, quantities_of, roles_of, tokens
+from measured.headers.words import QUANTITY, VOCABULARY, is_time, quantities_of, roles_of, tokens
 
 NUMBER = re.compile(r"[-+]?(\d+([.,]\d*)?|[.,]\d+)([eE][-+]?\d+)?")
 # Digits in threes: with a decimal part, in several groups, or with a sign between them that is not a decimal sign.
@@ -17,7 +17,7 @@ GROUPED = re.compile(
 )
 ONE_GROUP = re.compile(r"[-+]?[1-9]\d{0,2}([.,])\d{3}")
 DECIMAL = re.compile(r"^[-+]?\d*([.,])\d+(?:[eE][-+]?\d+)?$")
-WITH_UNIT = re.compile(r"([-+]?\d+(?:[.,]\d+)?)\s*([^\d\s.,:;+-][^\d\s]{0,8})")
+WITH_UNIT = re.compile(r"([-+]?\d+(?:[.,]\d+)?(?:[eE][-+]?\d+)?)\s*([^\d\s.,:;+-][^\d\s]{0,8})")
 # 10:05, 1:10:05.5 and 10:05:00 pm; 3 days 10:05:00 and 3.10:05:00 of a span of time; PT1H10M5S.
 CLOCK = re.compile(
     r"(?:(?P<days>\d+)(?:\s*d(?:ays?)?,?\s*|[.\s]))?(?P<first>\d{1,4}):(?P<second>\d{2}(?:[.,]\d+)?)"
@@ -30,6 +30,7 @@ _MONTH = f"(?:{'|'.join(' '.join(VOCABULARY['months'].values()).split())})[^\\W\
 DATE = re.compile(
     r"(?:[^\W\d_]{2,10}[.,]{0,2}\s+)?"  # the day of the week
     r"(\d{4}[-/.年]\s?\d{1,2}[-/.月]\s?\d{1,2}[.日]?|\d{1,2}[-/.]\s?\d{1,2}[-/.]\s?\d{2,4}\.?(?=\D|$)|(?:19|20)\d{6}(?:[T:]?\d{4,6})?(?=\D|$)"
+    r"|\d{1,2}[-/.]\s?\d{1,2}\.?(?=\s+\d{1,2}:\d\d)"  # 03/28 10:05, without a year
     rf"|\d{{1,2}}[-/. ]{{1,2}}{_MONTH}\.?[-/., ]{{1,2}}\d{{2,4}}|{_MONTH}\.?\s\d{{1,2}},?(\s\d{{4}})?)"
     r"([T ,].*|:\d\d:.*)?",
     re.IGNORECASE,
@@ -149,6 +150,10 @@ INNER = re.compile(r"^([^,]+),\s*([^\s,()]+)\s*(\(.+\))$")  # Temp, °F (LGR S/N
 SERIAL = re.compile(r"(?:LGR |SEN )?S/N: ?\w+(?:, )?")  # of a logger and its sensor: LGR is not a bearing
 BEFORE = re.compile(r"^(?:M\d\d:\s*|(?=[°º]))(\S+)\s+(\S.*)$")  # M00: °C Wicklung, °C Wicklung
 BARS = re.compile(r'^"?([^|"]+)"?\|"?([^|"]*)"?(?:\|[^|]*)+$')  # MotorTemp|"C"|0.0|300.0|5
+SMALL = {  # p_loss_w, but not T_f
+    unit: QUANTITY[of]
+    for unit, of in (("c", "temperature"), ("f", "temperature"), ("w", "power"), ("v", "voltage"), ("a", "current"))
+}
 RATIO = re.compile(r"^(.*[^\W_])_(?!per_)([a-z]+\d?|1)(?:_per)?_(s|sec(?:ond)?|min(?:ute)?|h(?:ou)?r?)$")  # flow_l_s
 JOINT = re.compile(r"([Tt]ime)(US|MS|NS)")  # of flight controllers
 TRAILING = re.compile(r"^(.*?)(?:_|\s*/\s*|\s+in\s+|[,:]\s*|\s+)((?:deg(?:rees?)?[ _])?[^\s_/]+(?:/[^\W_A-Z]+)?)$")
@@ -177,11 +182,14 @@ def split_unit(header: str) -> tuple[str, str]:
     if (
         (last := TRAILING.match(header))
         and last[1]
-        and (_surely(last[2]) or (last[2] in ("c", "f") and tokens(last[1]) in (("temp",), ("temperature",))))
+        and (_surely(last[2]) or any(len(w) > 1 and w in SMALL.get(last[2], ()) for w in tokens(last[1])))
         and not (unit_of(last[2]) in TIMES and not is_time(last[1]) and (roles_of(last[1]) or quantities_of(last[1])))
         and not re.search(r"\([^)]*$|\[[^]]*$", last[1])
     ):
         return last[1].strip(), unit_of(last[2])
+    front, _, rest = header.partition(" ")
+    if len(front) > 1 and _surely(front) and quantities_of(rest) and unit_of(front) not in TIMES:  # kW Loss
+        return rest.strip(), unit_of(front)
     joint = JOINT.fullmatch(header)
     return (joint[1], joint[2].lower()) if joint else (header.strip(), "")
 

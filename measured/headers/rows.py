@@ -80,7 +80,10 @@ def layout(rows: Sequence[Row], where: str) -> Layout:
         clear = [len(n) > 1 and _informative([n]) and not {*tokens(split_unit(n)[0])} <= SETPOINT | READ for n in names]
         once = [names.count(n) == 1 and (t or not _informative([g])) for g, n, t in zip(groups, names, clear)]
         names = [n if once[j] or not n else f"{split_unit(groups[j])[0]} {n}".strip() for j, n in enumerate(names)]
-    others = [*above, *(_padded(rows[i], width) for i in block if i > header and i != units)]
+    under = [_padded(rows[i], width) for i in block if i > header and i != units]
+    if measured := next((r for r in under if all(split_unit(c)[1] for c in r)), ()):  # "Temperature (°C)" of each
+        names = [c if is_time(split_unit(c)[0]) else f"{n} {c}" for n, c in zip(names, measured)]
+    others = [*above, *under]
     statistics = next((r for r in others if {*map(str.lower, filter(None, r))} <= STATISTICS), ())
     if statistics and len({*names}) < len(names):  # of one signal the mean and the largest
         names = [f"{cell} {name}".strip() for cell, name in zip(statistics, names, strict=True)]
@@ -149,9 +152,7 @@ def called(names: list[str], before: Sequence[Row]) -> list[str]:
     """Names of channels with what a table beside the readings calls them: there a row for each says what it is, or a
     line as "T1 = winding"; the largest and the mean of one have its words."""
     labels = [_bare(split_unit(name)[0]) for name in names]
-    lines = (
-        [*m.groups()] if len(row) == 1 and (m := EXPLAINED.match(str(row[0]))) else row for row in map(trimmed, before)
-    )
+    lines = ([*m.groups()] if row and (m := EXPLAINED.match(str(row[0]))) else row for row in map(trimmed, before))
     table = {label: row for row in lines if len(row) > 1 and (label := _bare(str(row[0]))) in labels}
     if len(table) < 2 or any(roles_of(name) for name, label in zip(names, labels, strict=True) if label in table):
         return names
@@ -164,7 +165,7 @@ def called(names: list[str], before: Sequence[Row]) -> list[str]:
     heads = [str(cell).strip() for row in before if len(row) == len(scores) for cell in row]
     by_name = (i % len(scores) for i, head in enumerate(heads) if {*tokens(head)} & {*UNIT_NAMES})
     at = next(by_name, next((j for j, of in enumerate(cells) if j and all(map(is_unit, of))), len(scores)))
-    units = {label: f" [{str(row[at]).strip()}]" for label, row in table.items() if at < len(row)}
+    units = {label: f" [{str(row[at]).strip(' []()')}]" for label, row in table.items() if at < len(row)}
     parts = zip(names, labels, strict=True)
     return [f"{name} {words.get(label, '')}{units.get(label, '')}".strip() for name, label in parts]
 

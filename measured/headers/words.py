@@ -7,7 +7,7 @@ import tomllib
 from collections.abc import Mapping
 from pathlib import Path
 
-from geom.description.roles import ROLE_WORDS, SHORTEST, Role, words_of
+from geom.description.roles import GERMAN, ROLE_WORDS, SHORTEST, Role, words_of
 
 WORD = re.compile(r"[A-ZÀ-ÖØ-Þ]?[a-zß-öø-ſ]+|[A-ZÀ-ÖØ-Þ]+(?![a-zß-öø-ÿ])|\d+|(?:[^\W\d_A-Za-zªµºÀ-ſ]|[\u0e30-\u0e4e])+")
 
@@ -22,6 +22,8 @@ NOTHING, RATIO = WORDS["nothing"], WORDS["ratio"]
 DIFFERENCE, CLOCKS, LOSS, OUTER, CHANNELS = (WORDS[n] for n in ("difference", "clock", "loss", "outer", "channels"))
 EXTREME, SPREAD, MEAN, INSTRUMENT, MACHINE = (WORDS[n] for n in ("extreme", "spread", "mean", "instrument", "machine"))
 SPARE, RUNS, SUPPLY, GOES_IN, COMES_OUT = (WORDS[n] for n in ("spare", "runs", "supply", "goes_in", "comes_out"))
+BATTERY = WORDS["battery"]
+SUPPLY |= BATTERY
 STATISTICS = EXTREME | MEAN | SPREAD
 STAGE, PUMP, EXHAUST, CABINET, COLD = (WORDS[n] for n in ("stage", "pump", "exhaust", "cabinet", "cold"))
 SPOT, LOGGER, OIL, ROOMS = (WORDS[n] for n in ("spot", "logger", "oil", "rooms"))
@@ -29,12 +31,13 @@ INSTRUMENT |= CABINET | LOGGER
 PHRASES = {
     re.compile(rf"(?:(?<![^\W\d_])|(?<=[a-z])(?=[A-Z]))(?i:{phrase.replace(' ', '[ _-]?')})(?![a-zß-ÿ])"): word
     for word, phrases in VOCABULARY["phrases"].items()
-    for phrase in phrases.split(",")
+    for plain_phrase in phrases.split(",")
+    for phrase in {plain_phrase, plain_phrase.translate(GERMAN)}
 }
 WOUND = frozenset({*"uvw", "rtd", "pt", "ntc", "ptc", "kty"})  # phases, and what is put between the wires of one
 PATH = re.compile(r"[/\\.:|]")  # between the names of groups: Model Root/i_phase, Motor.T_winding
 CHANNEL = re.compile(r"^(?:[A-Z]+\d+-\d+|CH ?\d+)[: ]+")  # of a logger, before what it reads
-HEAT = re.compile("(.+?)(temp|temperatu.+)|(temp)(.+)")  # motortemp, Lufttemperatur
+HEAT = re.compile("(.+?)(?:(?<=ng)s)?(temp|temperatu.+)|(temp)(.+)")  # motortemp, Lufttemperatur, Wicklungstemp
 LAST = ("time", "timestamp", "zeit")  # of a path, which is a clock whatever it leads through
 LETTERED = re.compile(
     r"(?<![A-Za-z])[a-z]?([TP])(?!im|yp|ag|ab|es|ot|or|q|rq|as|ic|re|os|ha|he|er|ar|wm|id)[a-z]{1,2}(?![A-Za-z])"
@@ -82,7 +85,7 @@ def quantities_of(name: str) -> list[str]:
     }
     spoken = {w for w in spoken if len(w) > 1 and any(w in terms for terms in QUANTITY.values())} or spoken
     quantities = [q for q, terms in QUANTITY.items() if spoken & terms]
-    if quantities == ["power"] and re.match(r"p(?![a-z])", name):
+    if quantities == ["power"] and not spoken & QUANTITY["power"] - {"p"} and name[0] == "p":
         return []
     long = {q: [k for k in terms if len(k) > SHORTEST or k[0] >= IDEOGRAPHS] for q, terms in QUANTITY.items()}
     inside = {q: max((len(k) for k in terms for w in words if k in w), default=0) for q, terms in long.items()}

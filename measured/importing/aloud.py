@@ -37,6 +37,7 @@ from measured.importing.guess import (
     Guess,
     in_memory,
     is_whole,
+    may_wind,
     of_edge,
 )
 from measured.importing.relations import COARSE, NOISE_K, misfit, names_of
@@ -121,6 +122,8 @@ def may_be_temperature(source: Source, g: Guess) -> bool:
 def _winding(columns: Columns, left: Columns) -> dict[str, str]:
     hot = [(roles_of(f"{r.source.labels[g.column]} {g.place}"), g) for r, g in columns if g.place]
     if any(Role.WINDING in roles or is_whole(g.column) or AS_WINDING in g.doubt for roles, g in hot):
+        return {}
+    if not may_wind((r.source.labels[g.column], g) for r, g in columns):
         return {}
     wound = [(r, g) for r, g in left if Role.WINDING in roles_of(r.source.labels[g.column])[:1]]
     lost = [g.column for r, g in wound if may_be_temperature(r.source, g)]

@@ -31,6 +31,8 @@ INSTANT = re.compile(
 ISO = re.compile(r"\d{4}-\d\d-\d\d[ T]\d\d:\d\d(?::\d\d(?:\.\d{1,6})?)?")  # NumPy reads it
 ZONES = {zone: float(hours) for zone, hours in re.findall(r"([A-Z]+)(\S+)", VOCABULARY["words"]["zones"])}  # else UTC
 POINTED = re.compile(r"(?<=[ T])(\d{1,2})\.(\d{2})\.(\d{2})")  # a time of day with points, after a date
+NO_YEAR = "1972"  # a leap year that stands for none
+YEARLESS = re.compile(r"(\d{1,2})[-/.]\s?(\d{1,2})\.?(?=\s+\d{1,2}:\d\d)")
 BETWEEN = re.compile(r"(?<=\d),?\s+(?![apAP][mM])[a-zA-ZÀ-ÿ]{1,3}\.?\s+(?=\d{1,2}:\d\d)")  # klo, kl., um, at, à
 IDEOGRAPHIC = str.maketrans({"年": "-", "月": "-", "日": " ", "时": ":", "時": ":", "分": ":", "秒": ""})
 WEEKDAY = re.compile(  # before a whole date: mar. 04/06/2024 and mar. 4 juin 2024 are no March
@@ -447,7 +449,8 @@ def _instants(cells: Sequence[Any], columns: tuple[str, ...], label: str) -> Clo
     lost = len([c for c in cells if str(c or "").strip()]) - len(read)
     doubt = doubt or (f"{lost} of {len(cells)} times could not be read" if lost > (1 - SHARE) * len(cells) else "")
     clock = _since_first(seconds, columns, f"dates, {order}{'with a zone' if zone else ZONELESS}")
-    return replace(clock, doubt=doubt)
+    whole = any(m["c"] != NO_YEAR for m in read)
+    return replace(clock, doubt=doubt, start=clock.start if whole else None)
 
 
 def _fewer_leaps(short: Sequence[re.Match[str]]) -> bool:
@@ -468,6 +471,8 @@ def _spelled_out(cell: Any) -> str:
         return f"{text[:4]}-{text[4:6]}-{text[6:8]}T{clock}{text[14:]}"
     text = re.sub(r"(?i)\b([ap])\.\s?m\.?", r"\1m", str(cell).strip().translate(IDEOGRAPHIC))
     text = re.sub(r"(?<=\d{4}):(?=\d\d:\d\d)", " ", text)  # 28/Mar/2026:12:00:10 of a web server
+    if day := YEARLESS.match(text):
+        return f"{day[1]}/{day[2]}/{NO_YEAR}{text[day.end() :]}"
     text = BETWEEN.sub(" ", re.sub(r"(\d{4}-\d\d-\d\d)_", r"\1 ", POINTED.sub(r"\1:\2:\3", text)))
     return _month_in_digits(text) if re.search(r"[^\W\d_]{3}", text) else re.sub(r"([-/.])\s", r"\1", text)
 
@@ -528,11 +533,11 @@ def _since_first(seconds: Array, columns: tuple[str, ...], words: str) -> Clock:
 
 def _of_day(source: Source, column: str) -> Clock:
     """h:mm:ss or m:ss, with fractions; past midnight it goes on. Two numbers alone may be hours or minutes."""
-    cells, label = source.cells[column], source.labels[column].lower() + source.units[column].lower()
+    cells, label = source.cells[column], column.lower() + source.units[column].lower()
     parsed = [_parts(c) for c in cells]
     read = [p for p in parsed if p]
     two = all(len(p) == 2 for p in read)
-    texts = [str(c).strip() for c in cells[:SAMPLE] if c is not None]
+    texts = [str(c).strip() for c, p in zip(cells[:SAMPLE], parsed) if p]  # not remarks under the readings
     halves = any(text.lower().endswith("m") for text in texts)
     hours_in_label, minutes_in_label = (
         "hh" in label or "h:m" in label or halves or bool(DAY_NAMES & set(tokens(label))),

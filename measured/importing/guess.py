@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+import itertools
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -15,6 +16,7 @@ from lumped.model.quantities import AIR, INPUTS, LIQUID, USUAL
 from lumped.schemas.bounds import COLDEST, HOTTEST
 from measured.headers.cells import is_unit, unit_of
 from measured.headers.words import (
+    BATTERY,
     CABINET,
     EXTREME,
     INLET,
@@ -87,7 +89,7 @@ OTHER_UNITS = {  # of loggers, that no table of a sheet lists: for pint
     "temperature": ("mK",),
     "current": ("uA",),
     "voltage": ("uV",),
-    "power": ("uW", "mW", "MW", "hp", "metric_horsepower"),
+    "power": ("uW", "mW", "MW", "BTU/hour", "hp", "metric_horsepower"),
     "torque": ("mN*m", "cN*m", "lbf*ft"),
     "speed": ("krpm", "deg/s"),
     "water_flow": ("l/h", "l/s", "gallon/min", "ml/min", "ml/s"),
@@ -119,6 +121,7 @@ WHOLE = "names no part: the winding?"
 BY_LETTERS = "by its letters alone"
 HARDLY = "hardly warms: taken as the room"
 SEVERAL = "of the first of several machines, by their numbers?"
+NUMBERED_MACHINE = "of one of several machines, by its number: a file of each?"
 UNKNOWN = "unknown"  # of a unit
 RELATIVE = "relative to a nominal"
 OF_WHAT = "a share, by its unit alone: of what?"
@@ -157,6 +160,7 @@ CERTAIN = (
     "--set gives it",
 )  # nothing is lost
 REMARK_WORDS = READ | SETPOINT | frozenset().union(*QUANTITY.values(), *ROLES.values())  # in brackets no unit
+TURNING = ("speed", "torque")  # of a machine
 ELSEWHERE = frozenset({"resistance", "back_emf", "time", "fraction"})  # units that no plain column is guessed from
 
 
@@ -276,6 +280,16 @@ def _without_functions(source: Source, every: list[Guess]) -> list[Guess]:
     return out
 
 
+def may_wind(columns: Iterable[tuple[str, Guess]]) -> bool:
+    """May what is tested have a winding: does it turn, or does no name tell of a room or a battery?
+
+    columns : labels and what was guessed of each
+    """
+    every = [*columns]
+    other = any(INDOORS in g.doubt or is_spoken(label, ROOMS | BATTERY) for label, g in every)
+    return not other or any(g.quantity in TURNING or is_spoken(label, MACHINE) for label, g in every)
+
+
 def _quickest(source: Source, every: list[Guess], target: Target) -> list[Guess]:
     """With a doubt at those of the stator, or that follow the heat fastest, where none is of a winding by its name."""
     hot = {
@@ -283,7 +297,8 @@ def _quickest(source: Source, every: list[Guess], target: Target) -> list[Guess]
     }
     heats = [source.numbers(g.column) for q in FACTORS for g in every if g.feeds and g.quantity == q]
     first = not target.places  # of a network that is to be made from the columns
-    if any(Role.WINDING in roles for roles in hot.values()):
+    wound = may_wind((source.labels[g.column], g) for g in every)
+    if not wound or any(Role.WINDING in roles for roles in hot.values()):
         return every
     headers = target.places_by_header.keys()
     if stators := {c for c in hot if is_stator(label := source.labels[c]) and (first or label in headers)}:
@@ -341,7 +356,11 @@ def _with_switches(source: Source, every: list[Guess]) -> list[Guess]:
 
 
 def _of_one(source: Source, every: list[Guess]) -> list[Guess]:
-    """Of the first machine, and a doubt, where speeds differ by a number alone."""
+    """Of the first machine, and a doubt, where speeds differ by a number alone; a doubt at all that are numbered."""
+    words = {g.column: itertools.pairwise(tokens(source.labels[g.column])) for g in every if g.place}
+    numbers = {c: n for c, pairs in words.items() for word, n in pairs if word in MACHINE and n.isdigit()}
+    if len({*numbers.values()}) > 1:
+        every = [g.also(NUMBERED_MACHINE) if g.column in numbers else g for g in every]
     stems = {g.column: (g.quantity, *filter(str.isalpha, tokens(source.labels[g.column]))) for g in every if g.feeds}
     lost = stems.keys() - {stem: column for column, stem in reversed(stems.items())}.values()
     if not any(stems[column][0] == "speed" for column in lost):
@@ -378,9 +397,10 @@ def _read(source: Source, every: list[Guess], target: Target) -> list[Guess]:
         every = [replace(g, place=edges[0], doubt=AS_ROOM) if g.column == coldest else g for g in every]
         instruments -= {coldest}
     warmest = max((np.nanmax(in_memory(source, g)) for g in rest), default=np.inf)
-    if any(is_spoken(hot[g.column], MACHINE) or roles_of(hot[g.column]) for g in rest):
-        warmest = np.inf
-    tested = any(is_spoken(hot[g.column], SPOT) for g in rest)
+    has_name = any(is_spoken(hot[g.column], MACHINE) or roles_of(hot[g.column]) for g in rest)
+    warmest = np.inf if has_name else warmest
+    turns = any(g.quantity in TURNING for g in every)
+    tested = any(is_spoken(hot[g.column], SPOT) for g in rest) or (bool(rest) and not (has_name or turns))
     for i, g in enumerate(every):
         if g.column not in instruments:
             continue
@@ -746,9 +766,7 @@ def single(guesses: list[Guess], target: Target, labels: Mapping[str, str]) -> l
             if g.feeds and is_setpoint(g.column):
                 out[g.column] = g.also(DEMAND)
             continue
-        of_part = g.quantity == "power" and (
-            roles_of(g.column) or is_spoken(g.column, ROOMS) or LOSS & {*tokens(labels[owner[key]])}
-        )
+        of_part = g.quantity == "power" and (NO_UNIT not in g.doubt or roles_of(g.column) or is_spoken(g.column, ROOMS))
         if g.feeds and (g.feeds not in target.inputs or of_part) and not is_setpoint(g.column):  # of copper or iron
             stem, _, unit = input_name(g).rpartition("_")
             names = (f"{stem}{end}_{unit}" for end in ("", *(f"_{i}" for i in range(2, len(guesses) + 2))))

@@ -44,7 +44,7 @@ TIMES = {"ms": 1e-3, "min": 60.0, "h": 3600.0}
 FEW_SHORT = 0.1  # of the rows: more that are short have empty ends
 DEGREE = 5  # letters: every second header has one, and no page but the right one makes it
 PAIR = r"[^\W\d]\w*=[^\s=]+(?: [^\s=\d][^\s=]*(?!\S))?"  # of a line that a program logged
-LOGGED = re.compile(rf"^(\d\S*[ T]\d\d:\S+|\d+:\d\d:\S+)(?=\s)[^=\n]*?((?:\s{PAIR})+)\s*$", re.MULTILINE)
+LOGGED = re.compile(rf"^\[?((?:\d\S*[ T])?\d+:\d\d:[^\s\]]+)(?=[\s\]])[^=\n]*?((?:\s{PAIR})+)\s*$", re.MULTILINE)
 POINT = re.compile(r"^([^\s=,]+(?:,\S+=\S+)?) ([^\s=,]+=\S+?)[iu]? (\d{10,19})(?=\r?$)", re.MULTILINE)  # a,b=c d=5i 17
 TITLE = re.compile(r"(?:.*\.)?_*(?:name|label|channel|signal|title|target)_*")  # of a signal in JSON: metric.__name__
 UNITS = ("unit", "units")

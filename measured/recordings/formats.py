@@ -27,6 +27,7 @@ from geom.plugins import plugins
 from geom.recording_bounds import CHUNK, check_elements, check_shape, counted_rows, timed
 from lumped.schemas.reader import suggestion
 from measured.headers.rows import first_row_layout
+from measured.headers.words import is_time
 from measured.recordings.csv_file import HEAD, csv_pieces, in_rows, joined_parts
 from measured.recordings.data_table import DataTable
 
@@ -49,6 +50,7 @@ Contents = tuple[Columns, dict[str, Any]]  # and what else the file says of them
 BOOK = "an Excel workbook"
 BOOKS_READ: ContextVar[dict[Path, dict[str, list[list[Any]]]] | None] = ContextVar("books read so far", default=None)
 EPOCH = np.datetime64(0, "s")  # 1970
+UNITS = ("unit_string", "unit", "Unit", "Units")  # properties of a channel
 TIMELESS = "no channel says how far its rows are apart; without one of times rows are taken as 1 s apart"
 
 
@@ -386,9 +388,9 @@ def _tdms(file: Path, group: str) -> Contents:
         by_name = [(c.name if names[c.name] == 1 else f"{g}/{c.name}", c) for g, c in channels if len(c)]
         columns = joined((name, *_tdms_signal(c)) for name, c in timed(by_name, file))
         starts = [c.properties["wf_start_time"] for _, c in channels if "wf_start_time" in c.properties]
-        timeless = all("wf_increment" not in c.properties for _, c in channels)
+        timeless = not any("wf_increment" in c.properties or is_time(c.name) for _, c in channels)
         return columns, {
-            "units": {name: str(c.properties.get("unit_string", "")) for name, c in by_name},
+            "units": {name: str(next(filter(None, map(c.properties.get, UNITS)), "")) for name, c in by_name},
             "remarks": {name: str(c.properties.get("description", "")) for name, c in by_name},
             "start": _since_1970(starts[0]) if starts else None,
             "notes": (f"{file.name}: {TIMELESS}",) * timeless,

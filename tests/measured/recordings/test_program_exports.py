@@ -5,10 +5,25 @@ import json
 import numpy as np
 import pytest
 from logger_formats import signals
+from nptdms import ChannelObject, TdmsWriter
 
+from geom.description.roles import Role
 from geom.errors import InputError
+from measured.headers.cells import split_unit
+from measured.headers.words import quantities_of, roles_of, tokens
 from measured.importing.case_files import read_runs
-from measured.importing.guess import AS_TORQUE, BY_READINGS, DEAD, INDOORS, OF_INSTRUMENT, OF_TESTED, guesses
+from measured.importing.guess import (
+    AS_TORQUE,
+    AS_WINDING,
+    BY_READINGS,
+    DEAD,
+    INDOORS,
+    NUMBERED_MACHINE,
+    OF_INSTRUMENT,
+    OF_TESTED,
+    guesses,
+    in_memory,
+)
 from thermoscope.commands.test.new import first_model
 
 S = signals(5.0)
@@ -257,3 +272,110 @@ def test_means_and_limits_over_the_readings_are_left_out_and_said(tmp_path):
     (tmp_path / "a.csv").write_text("\n".join([text[0], *rows[:5], "0.1,25,3", *rows[5:]]) + "\n")
     with pytest.raises(InputError, match="runs back"):
         read_runs(tmp_path / "a.csv")
+
+
+def test_remarks_under_hours_and_minutes_do_not_make_them_minutes_and_seconds(tmp_path):
+    rows = [f"{8 + k // 6}:{k % 6}0,{v:.1f},{i:.1f}" for k, (v, i) in enumerate(zip(W[:30], J))]
+    text = "\n".join(["Time,T_coil [degC],I [A]", *rows, "Seen by: A. Nobody,,", "in Rome,,"])
+    (tmp_path / "a.csv").write_text(text + "\n")
+    [(_, clock)] = read_runs(tmp_path / "a.csv")
+    assert clock.end_s == pytest.approx(29 * 600.0)
+
+
+@pytest.mark.parametrize("stamp", [" 12/31  {:02d}:00:00", "31.12. {:02d}:00"])
+def test_dates_without_a_year_are_a_clock_without_a_start(tmp_path, stamp):
+    rows = [f"{stamp.format(h)},{v:.1f},{i:.1f}" for h, v, i in zip(range(1, 25), W, J)]
+    (tmp_path / "a.csv").write_text("\n".join(["Date/Time,T_coil [degC],I [A]", *rows]) + "\n")
+    [(_, clock)] = read_runs(tmp_path / "a.csv")
+    assert (clock.start, clock.end_s, clock.doubt) == (None, pytest.approx(23 * 3600.0), "")
+
+
+def test_quantities_and_units_under_the_names_of_parts(tmp_path):
+    head = "Spot,Winding,Bearing,Housing,Ambient,Motor\nNo,1,2,3,4,5\n"
+    head += "Time (s),Temp. (°C),Temp. (°C),Temp. (°C),Temp. (°C),Power (W)\n"
+    found, source = read(tmp_path, head + body(T, W, S["B"], H, A, 9 * J))
+    assert [*goes(found).values()] == ["winding", "bearing", "housing", "ambient", "power_W"]
+    assert [*source.units.values()] == ["s", *4 * ["degC"], "W"]
+
+
+def test_lines_over_a_table_say_what_its_channels_are(tmp_path):
+    """With the kind of sensor behind a comma."""
+    lines = ["# A1: Winding [°C], type K", "# A2: Lab air [°C], type T", "# A3: Losses [W], 0-10 V", "t [s],A1,A2,A3"]
+    found, _ = read(tmp_path, "\n".join(lines) + "\n" + body(T, W, A, 9 * J))
+    assert [g.quantity for g in found.values()] == ["temperature", "temperature", "power"]
+    assert found["A2 Lab air [°C]"].place == "ambient"
+
+
+def test_compounds_with_a_joint_and_german_letters_spelled_out_are_words():
+    assert roles_of("Wicklungstemperatur")[0] == Role.WINDING
+    assert roles_of("Umgebungstemp")[0] == Role.AMBIENT
+    assert tokens("T_Kuehlkoerper") == tokens("T_Kühlkörper") == ("t", "heatsink")
+    assert quantities_of("p_loss") == ["power"]
+    assert not quantities_of("p_in_bar")
+
+
+def test_a_small_letter_is_the_unit_of_the_quantity_before_it():
+    assert split_unit("loss_w") == ("loss", "W")
+    assert split_unit("temp_c") == ("temp", "degC")
+    assert split_unit("T_f") == ("T_f", "")
+    assert split_unit("T_coil_w") == ("T_coil_w", "")
+
+
+def test_every_power_is_an_input_of_its_own(tmp_path):
+    found, _ = read(tmp_path, "t [s],Tcoil [C],Tair [C],Pa [W],Pb [W]\n" + body(T, W, A, 9 * J, 5 * N / 1500))
+    assert [g.feeds for g in found.values() if g.quantity == "power"] == ["power_W", "pb_W"]
+
+
+def test_where_nothing_turns_a_device_is_what_is_tested(tmp_path):
+    found, _ = read(tmp_path, "t [s],T_module [C],T_heatsink [C],T_air [C],P [W]\n" + body(T, W, H, A, 9 * J))
+    assert found["T_heatsink [C]"].place == "heatsink"
+    beside = "t [s],T_module [C],T_heatsink [C],T_air [C],P [W],Speed [rpm]\n" + body(T, W, H, A, 9 * J, N)
+    assert not read(tmp_path, beside)[0]["T_heatsink [C]"].used
+
+
+def test_a_battery_has_no_winding(tmp_path):
+    head = "t [s],Cell 1 [C],Cell 2 [C],Air [C],I [A]"
+    still, _ = read(tmp_path, f"{head}\n" + body(T, W, H, A, J))
+    turning, _ = read(tmp_path, f"{head},Speed [rpm]\n" + body(T, W, H, A, J, N))
+    assert not any(AS_WINDING in g.doubt for g in still.values())
+    assert any(AS_WINDING in g.doubt for g in turning.values())
+
+
+def test_a_logged_line_with_its_instant_in_brackets(tmp_path):
+    lines = [
+        f"[2026-03-01 10:{k:02d}:00] INFO m: T_coil={w:.1f}C P_loss={9 * i:.1f}W"
+        for k, (w, i) in enumerate(zip(W[:50], J))
+    ]
+    found, source = read(tmp_path, "\n".join(lines) + "\n", "a.log")
+    assert goes(found) == {"T_coil": "coil", "P_loss": "power_W"}
+    assert source.rows == 50
+
+
+def test_a_unit_of_a_channel_by_any_name_and_instants_beside_it(tmp_path):
+    with TdmsWriter(tmp_path / "a.tdms") as file:
+        at = np.datetime64("2026-03-01T10:00:00") + (1e6 * T).astype("m8[us]")
+        file.write_segment(
+            [ChannelObject("g", "Time", at), ChannelObject("g", "Coil", W, properties={"Unit": "Deg C"})]
+        )
+    [(source, clock)] = read_runs(tmp_path / "a.tdms")
+    assert (source.units["Coil"], source.notes, clock.end_s) == ("Deg C", (), pytest.approx(T[-1]))
+
+
+def test_cells_in_powers_of_ten_have_their_units_too(tmp_path):
+    lines = ["Time [s]\t0 Coil\t1 Air", *(f"{t:g}\t{w:+.5E} C\t{a:+.5E} C" for t, w, a in zip(T, W, A))]
+    found, source = read(tmp_path, "\n".join(lines) + "\n", "a.txt")
+    assert goes(found) == {"0 Coil": "0-coil", "1 Air": "ambient"}
+    assert source.numbers("0 Coil") == pytest.approx(W, rel=1e-5)
+
+
+def test_a_unit_may_stand_before_a_name_or_be_of_the_old_world(tmp_path):
+    assert split_unit("kW Loss") == ("Loss", "kW")
+    assert split_unit("ms today") == ("ms today", "")
+    found, source = read(tmp_path, "t [s],T_coil [C],Heater (BTU/h)\n" + body(T, W, 3412.14 * J / 9))
+    assert found["Heater (BTU/h)"].feeds == "power_W"
+    assert in_memory(source, found["Heater (BTU/h)"]).max() == pytest.approx(1000.0, rel=1e-3)
+
+
+def test_two_machines_in_one_table_are_doubted(tmp_path):
+    found, _ = read(tmp_path, "t [s],Motor 1 coil [C],Motor 2 coil [C],Air [C],I [A]\n" + body(T, W, H, A, J))
+    assert [NUMBERED_MACHINE in g.doubt for g in found.values()] == [True, True, False, False]
