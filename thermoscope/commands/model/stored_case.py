@@ -15,6 +15,7 @@ from geom.storage import write_whole
 from geom.table import Table
 from geom.text import counted
 from lumped.machine.loss_sources import checked_losses
+from lumped.machine.path import stem
 from thermoscope.commands.model.stored_losses import TOLD_W, loss_words
 from thermoscope.console.summary import Summary
 from thermoscope.console.terminal import progress
@@ -120,7 +121,7 @@ def stored_rows(draft: Draft, network: Network) -> list[dict[str, Any]]:
         if not place:
             why = "its name is not understood"
         elif place not in {*network.places, *network.boundaries}:
-            cells = any(p.startswith(f"{place}@") for p in network.places)
+            cells = any(stem(p) == place for p in network.places)
             why = "lies in several cells: in the ratio alone" if cells else f"this network has no place '{place}'"
             place = ""
         rows.append({"sensor": name, "degC": value, "place": place, "doubt": why})

@@ -16,11 +16,11 @@ from geom.machine_file import machine_from
 from lumped.build.pipeline import build
 from lumped.integration.steady import steady
 from lumped.machine.motor import rated_inputs
+from lumped.machine.path import stem
 from lumped.model.network import Network
 from lumped.transfer.ranges import within_silence
-from validation.parameters.unknowns import value_words
+from validation.parameters.unknowns import matching, value_words
 
-HEATED = ("winding.copper", "stator.core", "rotor.core", "magnets", "rotor.cage", "bearing.left", "bearing.right")
 BEGIN_W, LEAST_W, MOST_W = 100.0, 1e-3, 1e4  # of a loss
 TOLD_W = 1.0  # less is none
 MOST = 20.0  # times a film or contact: as far as correlations and interfaces of machines may be off
@@ -79,17 +79,13 @@ def steady_rises(draft: Draft, boundaries: Mapping[str, float], own: bool = Fals
 
     Temperatures not above what the machine rests at without losses are left out.
     """
-    sections, parts = draft.sections(), assumptions.parts_of(draft)
-    heated = tuple(place for place in HEATED if place in parts or place in sections["sensors"])
+    sections, heated = draft.sections(), assumptions.heated_places(draft)
     if not own:
-        losses = {f"at-{k}": {"kind": "stray", "at": at, "P_W": 1.0} for k, at in enumerate(heated)}
-        sections["losses"] = losses
+        sections["losses"] = {f"at-{k}": {"kind": "stray", "at": at, "P_W": 1.0} for k, at in enumerate(heated)}
     machine = machine_from(sections, draft.name)
     network = build(machine).network
     wide = tuple(replace(p, low=1e-9, high=1e9) for p in network.parameters)
-    places = {
-        name: tuple(p for p in network.places if p.partition("@")[0] == place) for name, place in draft.places.items()
-    }
+    places = {name: tuple(p for p in network.places if stem(p) == place) for name, place in draft.places.items()}
     above = {name: draft.readings[name] - rest_degC(boundaries) for name in places}
     names = tuple(name for name in places if places[name] and above[name] > 0.0)
     inputs = {name: value for name, value in rated_inputs(machine).items() if name in network.inputs}
@@ -123,17 +119,15 @@ def nearest_losses(rises: SteadyRises) -> dict[str, Any]:
 
 
 def _one_free(rises: SteadyRises, losses: Mapping[str, float]) -> Iterator[tuple[float, str, float]]:
-    for p in rises.network.parameters:
-        if p.name.split(".")[0] in ("h", "contact"):
-            found = rises.nearest(losses, [p.name])
-            yield rms_ratio(rises.misfit(found)), p.name, found[p.name]
+    for p in matching(rises.network, ("h.*", "contact.*")):
+        found = rises.nearest(losses, [p.name])
+        yield rms_ratio(rises.misfit(found)), p.name, found[p.name]
 
 
 def loss_words(found: Mapping[str, Any]) -> list[str]:
     """Which losses come nearest, and what would have to differ for the rest."""
     heat = ", ".join(f"{watts:.0f} W at {place}" for place, watts in found["losses_W"].items() if watts >= TOLD_W)
-    best = "; ".join(
-        f"{value_words(x['name'])} x {x['factor']:.2g} ({100 * x['rms']:.0f} %)" for x in found["one_free"][:NAMES]
-    )
+    free = found["one_free"][:NAMES]
+    best = "; ".join(f"{value_words(x['name'])} x {x['factor']:.2g} ({100 * x['rms']:.0f} %)" for x in free)
     films = f"One film or contact changed alone brings most: {best}" if best else "Too few to say more of films"
     return [f"Losses that come nearest: {heat}. Rises are then off by {100 * found['rms']:.0f} % (rms).", f"{films}."]
