@@ -62,10 +62,10 @@ def write_stored_case(draft: Draft, folder: Path) -> dict[str, Any]:
     around = {name: around[name] for name in network.boundaries}
     with progress() as tell:
         tell("looking for the losses of the stored temperatures")
-        found = nearest_losses(steady_rises(draft, around))
-    rises = steady_rises(draft, around, own=True)
+        search = nearest_losses(steady_rises(draft, around))
+    rises = steady_rises(draft, around, unit_losses=False)
     if foreign := rms_ratio(rises.misfit()) > FOREIGN:
-        take_losses(draft, found["losses_W"])
+        take_losses(draft, search["losses_W"])
     inputs, text = rises.inputs, draft.toml()
     times = [STEP_S * k for k in range(ROWS + 1)]
     point: dict[str, Any] = {"time_s": times, **{name: [around[name]] * len(times) for name in network.boundaries}}
@@ -80,9 +80,9 @@ def write_stored_case(draft: Draft, folder: Path) -> dict[str, Any]:
         write_whole(partial / f"tests/{TEST}.toml", "\n".join(_sheet(draft, compared, inputs, network.boundaries)))
         for entry in read_settings(partial).tests:
             patient_of(entry)  # it is read as compare will
-    ratios = {row["place"]: row["ratio"] for row in found["rows"]}
+    ratios = {row["place"]: row["ratio"] for row in search["rows"]}
     rows = [{**row, "ratio": ratios.get(row["sensor"])} for row in rows]
-    point = {"inputs": dict(inputs), "boundaries": around, "foreign_losses": foreign, "nearest": found}
+    point = {"inputs": dict(inputs), "boundaries": around, "foreign_losses": foreign, "nearest": search}
     return {"case": str(folder), "readings": rows, **point}
 
 
@@ -132,7 +132,7 @@ def stored_summary(draft: Draft, test: dict[str, Any], rest: Summary) -> Summary
     """What can be compared, under which losses, and a row per stored temperature; then the rest of the import."""
     rows, around = test["readings"], test["boundaries"]
     compared = sum(bool(row["place"]) and row["place"] not in around for row in rows)
-    found, foreign = test["nearest"], test["foreign_losses"]
+    search, foreign = test["nearest"], test["foreign_losses"]
     watts = [e for e in draft.entries if e.section.startswith("losses.") and e.key == "P_W" and e.kind == COPIED]
     names = ", ".join(f"{e.section.partition('.')[2]} {e.value:g} W" for e in watts)
     losses = f"Losses of the file at their reference speeds: {names}" if watts else "The file has no losses: usual ones"
@@ -141,7 +141,7 @@ def stored_summary(draft: Draft, test: dict[str, Any], rest: Summary) -> Summary
     point = ", ".join(f"{name} {value:g}" for name, value in {**test["inputs"], **around}.items())
     sentence = (
         f"{test['case']}: test '{TEST}' compares {compared} of {counted(len(rows), 'stored temperature')}, "
-        f"at {point}. {losses}. {' '.join(loss_words(found))} {ONE_STATE}"
+        f"at {point}. {losses}. {' '.join(loss_words(search))} {ONE_STATE}"
     )
     table = Table.of("", rows, "*sensor | degC | *ratio | *place | *doubt")
     more = f"Next: thermoscope test compare {quote(test['case'])}; --json FILE"

@@ -61,12 +61,12 @@ class SteadyRises:
         """
         first = {**start, **dict.fromkeys(free, 1.0)}
         limits = [*((LEAST_W, MOST_W) for _ in start), *((1.0 / MOST, MOST) for _ in free)]
-        found = least_squares(
+        solution = least_squares(
             lambda x: self.misfit(dict(zip(first, np.exp(x).tolist(), strict=True))),
             np.clip(np.log([*first.values()]), *(inner := np.log(np.transpose(limits)) * (1.0 - 1e-9))),
             bounds=tuple(inner),
         )
-        return dict(zip(first, np.exp(found.x).tolist(), strict=True))
+        return dict(zip(first, np.exp(solution.x).tolist(), strict=True))
 
 
 def rest_degC(boundaries: Mapping[str, float]) -> float:
@@ -74,13 +74,13 @@ def rest_degC(boundaries: Mapping[str, float]) -> float:
     return boundaries.get("coolant", boundaries["ambient"])
 
 
-def steady_rises(draft: Draft, boundaries: Mapping[str, float], own: bool = False) -> SteadyRises:
+def steady_rises(draft: Draft, boundaries: Mapping[str, float], unit_losses: bool = True) -> SteadyRises:
     """The network of a draft under losses of 1 W each, or its own, and the stored temperatures that it has places of.
 
     Temperatures not above what the machine rests at without losses are left out.
     """
     sections, heated = draft.sections(), assumptions.heated_places(draft)
-    if not own:
+    if unit_losses:
         sections["losses"] = {f"at-{k}": {"kind": "stray", "at": at, "P_W": 1.0} for k, at in enumerate(heated)}
     machine = machine_from(sections, draft.name)
     network = build(machine).network
@@ -107,8 +107,8 @@ def nearest_losses(rises: SteadyRises) -> dict[str, Any]:
     start = {f"loss.at-{k}": BEGIN_W for k in range(len(rises.heated))}
     losses = rises.nearest(start)
     misfit = rises.misfit(losses)
-    told = sum(watts >= TOLD_W for watts in losses.values())
-    one_free = sorted(_one_free(rises, losses)) if len(rises.names) > told + 1 else []  # else nothing tells
+    sources = sum(watts >= TOLD_W for watts in losses.values())
+    one_free = sorted(_one_free(rises, losses)) if len(rises.names) > sources + 1 else []  # else nothing tells
     rows = zip(rises.names, rises.stored.tolist(), np.exp(misfit).tolist(), strict=True)
     return {
         "rows": [{"place": name, "stored_K": stored, "ratio": ratio} for name, stored, ratio in rows],
@@ -120,14 +120,14 @@ def nearest_losses(rises: SteadyRises) -> dict[str, Any]:
 
 def _one_free(rises: SteadyRises, losses: Mapping[str, float]) -> Iterator[tuple[float, str, float]]:
     for p in matching(rises.network, ("h.*", "contact.*")):
-        found = rises.nearest(losses, [p.name])
-        yield rms_ratio(rises.misfit(found)), p.name, found[p.name]
+        values = rises.nearest(losses, [p.name])
+        yield rms_ratio(rises.misfit(values)), p.name, values[p.name]
 
 
-def loss_words(found: Mapping[str, Any]) -> list[str]:
+def loss_words(search: Mapping[str, Any]) -> list[str]:
     """Which losses come nearest, and what would have to differ for the rest."""
-    heat = ", ".join(f"{watts:.0f} W at {place}" for place, watts in found["losses_W"].items() if watts >= TOLD_W)
-    free = found["one_free"][:NAMES]
+    heat = ", ".join(f"{watts:.0f} W at {place}" for place, watts in search["losses_W"].items() if watts >= TOLD_W)
+    free = search["one_free"][:NAMES]
     best = "; ".join(f"{value_words(x['name'])} x {x['factor']:.2g} ({100 * x['rms']:.0f} %)" for x in free)
     films = f"One film or contact changed alone brings most: {best}" if best else "Too few to say more of films"
     return [f"Losses that come nearest: {heat}. Rises are then off by {100 * found['rms']:.0f} % (rms).", f"{films}."]
