@@ -16,7 +16,7 @@ from geom.table import Table
 from geom.text import counted
 from lumped.machine.loss_sources import checked_losses
 from lumped.machine.path import stem
-from thermoscope.commands.model.stored_losses import TOLD_W, loss_words
+from thermoscope.commands.model.stored_losses import NEGLIGIBLE_W, loss_words
 from thermoscope.console.summary import Summary
 from thermoscope.console.terminal import progress
 
@@ -92,7 +92,7 @@ def take_losses(draft: Draft, watts: Mapping[str, float]) -> None:
         draft.entries.remove(e)
         if e.key == "P_W":
             draft.leave(e.section, e.value, "W: did not make the stored temperatures, which differ by more than twice")
-    for k, (place, loss) in enumerate((place, loss) for place, loss in watts.items() if loss >= TOLD_W):
+    for k, (place, loss) in enumerate((place, loss) for place, loss in watts.items() if loss >= NEGLIGIBLE_W):
         values = {"kind": "stray", "at": place, "P_W": round(loss, 3)}
         draft.assume(f"losses.nearest-{k + 1}", "comes nearest to the stored temperatures", **values)
 

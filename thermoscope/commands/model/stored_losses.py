@@ -22,7 +22,7 @@ from lumped.transfer.ranges import within_silence
 from validation.parameters.unknowns import matching, value_words
 
 BEGIN_W, LEAST_W, MOST_W = 100.0, 1e-3, 1e4  # of a loss
-TOLD_W = 1.0  # less is none
+NEGLIGIBLE_W = 1.0  # a smaller loss is none
 MOST = 20.0  # times a film or contact: as far as correlations and interfaces of machines may be off
 NAMES = 3  # films or contacts that are told
 
@@ -107,7 +107,7 @@ def nearest_losses(rises: SteadyRises) -> dict[str, Any]:
     start = {f"loss.at-{k}": BEGIN_W for k in range(len(rises.heated))}
     losses = rises.nearest(start)
     misfit = rises.misfit(losses)
-    sources = sum(watts >= TOLD_W for watts in losses.values())
+    sources = sum(watts >= NEGLIGIBLE_W for watts in losses.values())
     one_free = sorted(_one_free(rises, losses)) if len(rises.names) > sources + 1 else []  # else nothing tells
     rows = zip(rises.names, rises.stored.tolist(), np.exp(misfit).tolist(), strict=True)
     return {
@@ -126,8 +126,10 @@ def _one_free(rises: SteadyRises, losses: Mapping[str, float]) -> Iterator[tuple
 
 def loss_words(search: Mapping[str, Any]) -> list[str]:
     """Which losses come nearest, and what would have to differ for the rest."""
-    heat = ", ".join(f"{watts:.0f} W at {place}" for place, watts in search["losses_W"].items() if watts >= TOLD_W)
+    heat = ", ".join(
+        f"{watts:.0f} W at {place}" for place, watts in search["losses_W"].items() if watts >= NEGLIGIBLE_W
+    )
     free = search["one_free"][:NAMES]
     best = "; ".join(f"{value_words(x['name'])} x {x['factor']:.2g} ({100 * x['rms']:.0f} %)" for x in free)
     films = f"One film or contact changed alone brings most: {best}" if best else "Too few to say more of films"
-    return [f"Losses that come nearest: {heat}. Rises are then off by {100 * found['rms']:.0f} % (rms).", f"{films}."]
+    return [f"Losses that come nearest: {heat}. Rises are then off by {100 * search['rms']:.0f} % (rms).", f"{films}."]
