@@ -92,7 +92,8 @@ def take_losses(draft: Draft, watts: Mapping[str, float]) -> None:
         draft.entries.remove(e)
         if e.key == "P_W":
             draft.leave(e.section, e.value, "W: did not make the stored temperatures, which differ by more than twice")
-    for k, (place, loss) in enumerate((place, loss) for place, loss in watts.items() if loss >= NEGLIGIBLE_W):
+    large = [(place, loss) for place, loss in watts.items() if loss >= NEGLIGIBLE_W]
+    for k, (place, loss) in enumerate(large):
         values = {"kind": "stray", "at": place, "P_W": round(loss, 3)}
         draft.assume(f"losses.nearest-{k + 1}", "comes nearest to the stored temperatures", **values)
 
