@@ -20,6 +20,7 @@ from measured.doubt import USUAL, Doubt, Odds
 
 Role = Literal["calibrate", "validate", "hold-out"]
 _SIGNALS: WeakValueDictionary[tuple[str, int, int, int], Signals] = WeakValueDictionary()
+STILL_K = 1e-3  # below what any sensor resolves: corrections of equal readings by a larger network differ by less
 GAP = 10.0  # usual steps: a logger that was silent for longer had stopped
 
 
@@ -144,6 +145,12 @@ class Test:
         """Usual time between two records of an input (s)."""
         time = self.recorded.time if self.recorded else self.time
         return float(np.median(np.diff(time))) if time.size > 1 else 0.0
+
+    @property
+    def is_steady(self) -> bool:
+        """Whether no reading ever changes: its later part says what its earlier one said."""
+        every = [c.y[np.isfinite(c.y)] for c in self.channels]
+        return all(float(np.ptp(y)) < STILL_K for y in every if y.size)
 
     def scaled(self, factors: Mapping[str, float]) -> Test:
         """The test with some inputs multiplied."""

@@ -84,6 +84,12 @@ def parts_of(draft: Draft) -> set[str]:
     return always | ends | housing | sleeve | {part for name, part in some.items() if f"[outlines.{name}]" in sections}
 
 
+def heated_places(draft: Draft) -> tuple[str, ...]:
+    """Where a machine of another program may have losses: all of its copper, and its other solids that have some."""
+    solids = ("stator.core", "rotor.core", "magnets", "rotor.cage", "bearing.left", "bearing.right")
+    return ("winding.copper", *(part for part in solids if part in parts_of(draft)))
+
+
 def losses(draft: Draft, copper_mm2: float, length_m: float, parallel: float, iron_kg: float, density: float) -> None:
     """Losses to begin with, at 3000 rpm.
 

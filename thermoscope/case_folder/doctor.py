@@ -200,10 +200,14 @@ def _copies(patients: list[Patient]) -> Iterator[Finding]:
 def _alone(patients: list[Patient]) -> Iterator[Finding]:
     """One test: what it can still be used for."""
     if len(patients) == 1:
+        steady = all(np.unique(x[np.isfinite(x)]).size < 2 for x in patients[0].samples.values.values())
+        judged = (
+            "no effect is judged, for it is one steady state" if steady else "an effect is judged on its second half"
+        )
         yield Finding(
             patients[0].name,
             "",
-            "is the only test: nothing unseen judges the model, and an effect is judged on the second half of it",
+            f"is the only test: nothing unseen judges the model, and {judged}",
             'a further recording with role = "hold-out"',
             True,
         )

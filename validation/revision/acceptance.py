@@ -15,7 +15,7 @@ from types import MappingProxyType
 import numpy as np
 
 from geom.arrays import Array, Mask
-from measured.case import Test
+from measured.case import STILL_K, Test
 from measured.sensors.blocks import groups
 from validation.calibration.calibrate import ROUGH, CachedSegments, Fit, minimise
 from validation.comparison.linearisation import Segment, segments
@@ -79,6 +79,8 @@ def folds(
 ) -> list[Fold]:
     """Each test, or of many each share of them, left out in turn; where one alone tells of a step, its later part.
 
+    None of a steady test, whose later part repeats what was fitted.
+
     telling : names of the tests in which the step acts;  middle : when (s) half of what it does there has been seen
     lone : tests that alone tell of something in the model, see `lone_tests`: of these the later part
     """
@@ -86,11 +88,12 @@ def folds(
     out = []
     if not halved:  # else the other tests say nothing of the step, only of what it costs to fit one number more
         count = min(len(tests), MOST_FOLDS)
-        cut = {t.name: halves(t, lone[t.name]) for t in tests if t.name in lone}
-        for share in [tests[i::count] for i in range(count)]:
+        cut = {t.name: halves(t, lone[t.name]) for t in tests if t.name in lone and not t.is_steady}
+        others = [t for t in tests if t.name in cut or t.name not in lone]
+        for share in filter(None, [others[i::count] for i in range(count)]):
             fitted = [cut[t.name][0] if t in share else t for t in tests if t not in share or t.name in cut]
             out.append(Fold(tuple(fitted), tuple(cut[t.name][1] if t.name in cut else t for t in share)))
-    for test in (t for t in tests if t.name == halved):
+    for test in (t for t in tests if t.name == halved and not t.is_steady):
         first, second = halves(test, middle)
         out.append(Fold(tuple(first if t is test else t for t in tests), (second,)))
     return out
@@ -214,7 +217,7 @@ def prediction_checks(
     aside: bool = False,
     same: float = SAME,
 ) -> tuple[Check, ...]:
-    """Does a step predict what was left out better than the model before it, and than no change?
+    """Does a step predict what was left out better than the model before it, and than no change where there is one?
 
     before, after : fold by fold, both fitted to the same;  telling : the tests in which the step acts
     lone : tests of which the later part alone was left out
@@ -222,20 +225,35 @@ def prediction_checks(
         for the others, and must not cost them anything
     same : times the error before, up to which what is likelier may predict
     """
+    part = len(telling) == 1
+    if not after:
+        return (unseen_check(),)
     nats = [b.nats - a.nats for b, a in zip(after, before, strict=True)]
     was, now = rms(before), rms(after)
     gain = -GAIN if aside else GAIN
     short = f" where {GAIN:.3g} would do" if 0.0 < sum(nats) <= gain else ""
     better = f"better in {sum(x > 0 for x in nats)} of {len(nats)}, log odds {sum(nats):+.3g}{short}"
-    part = len(telling) == 1
     only = f"; seen in {telling[0]} only, judged on its later part: not yet tested elsewhere" if part else ""
     parts = f"; of {', '.join(lone)} the later part, since only it tells what held in it" if lone and not part else ""
     words = f"{fall(was, now)} (each part predicted from the others), {better}{only}{parts}"
-    none = float(np.sqrt(sum(f.no_change_K2s for f in after) / sum(f.seconds for f in after)))
+    moving = [
+        f for f in after if f.no_change_K2s > STILL_K**2 * f.seconds
+    ]  # a guess of no change knows what a steady test reads
+    error, none = (
+        rms(moving),
+        float(np.sqrt(sum(f.no_change_K2s for f in moving) / max(sum(f.seconds for f in moving), 1.0))),
+    )
+    beside = f"{error:.2f} K where a guess of no change leaves {none:.2f} K" if moving else "nothing left out changes"
     return (
         Check("left out", sum(nats) > gain and now <= same * was, sum(nats), gain, words, part),
-        Check("no change", now < none, now, none, f"{now:.2f} K where a guess of no change leaves {none:.2f} K", part),
+        Check("no change", error < none or not moving, now, none, beside, part),
     )
+
+
+def unseen_check() -> Check:
+    """Fails: nothing can be left out."""
+    words = "one steady state: its later part repeats what was fitted, so nothing unseen judges this"
+    return Check("left out", False, 0.0, GAIN, words, True)
 
 
 def rms(folds: Sequence[FoldPrediction]) -> float:

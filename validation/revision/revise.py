@@ -17,7 +17,7 @@ from lumped.model.multipliers import parameter_values
 from lumped.model.network import Parameter
 from lumped.model.once import once
 from lumped.schemas.reader import suggestion
-from measured.case import AddedEffect, Case, Channel, Model, Test
+from measured.case import STILL_K, AddedEffect, Case, Channel, Model, Test
 from measured.sensors.faults import broken_channels, without
 from measured.sensors.operators import of_measurement
 from validation.calibration.calibrate import Fit, Progress, no_progress, with_model_error
@@ -48,6 +48,7 @@ from validation.revision.acceptance import (
     prediction_checks,
     squares,
     telling_tests,
+    unseen_check,
     visible_check,
 )
 from validation.revision.repeated_events import repeated_events
@@ -366,25 +367,31 @@ def _fit_checks(case: Case, fit: Fit, new: Model, changes: Sequence[Change]) -> 
         for kind, (a, b) in pairs.items()
     ]
     sums = {which["left out"]: [(now.square_K2s, now.no_change_K2s, now.seconds) for now in blind]}
-    sums |= {which[kind]: [_as_read(replace(case, model=new), some)] for kind, some in groups.items()}
-    return (*checks, _no_change(sums, sigma))
+    sums |= {which[kind]: _as_read(replace(case, model=new), some) for kind, some in groups.items()}
+    return (*checks, *_no_change(sums, sigma), *(() if blind else (unseen_check(),)))
 
 
-def _as_read(case: Case, changes: Sequence[Change]) -> tuple[float, float, float]:
-    """Squared errors of tests over time (K2 s), sensors as they read; the same where nothing changes; and that time."""
-    tests = tuple(t for t in case.usable if t.name in {c.name for c in changes})
-    return squares(segments(standing(case), tests, physical(case)), Fold((), tests))
+def _as_read(case: Case, changes: Sequence[Change]) -> list[tuple[float, float, float]]:
+    """Of each test: squared errors over time (K2 s), as sensors read; the same where nothing changes; the time."""
+    tests = [t for t in case.usable if t.name in {c.name for c in changes}]
+    return [squares(segments(standing(case), [t], physical(case)), Fold((), (t,))) for t in tests]
 
 
-def _no_change(sums: Mapping[str, Sequence[tuple[float, float, float]]], sigma: float) -> Check:
-    """Of what a guess of no change predicts better than a fit by most, or nearly does.
+def _no_change(sums: Mapping[str, Sequence[tuple[float, float, float]]], sigma: float) -> tuple[Check, ...]:
+    """Of what a guess of no change predicts better than a fit by most, or nearly does; none of steady tests, which it
+    knows.
 
     sums : what was predicted -> squared errors of the fit and of that guess over time (K2 s), and that time (s)
     """
-    each = {what: np.sqrt(np.sum(rows, axis=0)[:2] / sum(span for *_, span in rows)) for what, rows in sums.items()}
+    moving = {
+        what: some for what, rows in sums.items() if (some := [row for row in rows if row[1] > STILL_K**2 * row[2]])
+    }
+    each = {what: np.sqrt(np.sum(rows, axis=0)[:2] / sum(span for *_, span in rows)) for what, rows in moving.items()}
+    if not each:
+        return ()
     what, (error, none) = max(each.items(), key=lambda x: x[1][0] / max(x[1][1], sigma))
     words = f"{error:.2f} K where a guess of no change leaves {none:.2f} K ({what})"
-    return Check("no change", bool(error <= max(none, sigma)), float(error), float(none), words)
+    return (Check("no change", bool(error <= max(none, sigma)), float(error), float(none), words),)
 
 
 def _plain(tests: Sequence[Test]) -> list[Test]:

@@ -114,6 +114,36 @@ def test_no_change_is_the_first_reading_of_the_test_not_of_its_half():
     assert found.no_change_K2s / found.seconds == pytest.approx(np.nanmean((y - test.channels[0].y[0]) ** 2), rel=1e-6)
 
 
+def at_rest(name, loss):
+    """A body that has been warmed for long: ten readings of one state."""
+    test = measured(name, loss=loss)
+    (channel,) = test.channels
+    y = np.full(test.time.size, 20.0 + 25.0 * loss)
+    return replace(test, initial={"body": y[0]}, channels=(replace(channel, y=y),))
+
+
+def test_of_one_steady_state_no_part_is_unseen():
+    """Its later part repeats the earlier: a step that fits it is told so and not accepted, and no guess is beaten."""
+    assert at_rest("one", 1.6).is_steady
+    assert not measured("one").is_steady
+    assert folds([at_rest("one", 1.6)], ["one"]) == []
+    done = calibrate(Case("one", Model(one_node(LOSS)), (at_rest("one", 1.6),)))
+    assert done.why.startswith("kept for the fitted tests only: one steady state")
+    assert "no change" not in {c.check for c in done.checks}
+
+
+def test_several_steady_states_are_left_out_in_turn_and_no_guess_of_no_change_is_asked():
+    """It begins with what a steady test reads, and so leaves nothing that a prediction could beat."""
+    tests = (at_rest("one", 1.6), at_rest("two", 1.6))
+    done = calibrate(Case("one", Model(one_node(LOSS)), tests))
+    assert done.accepted, done.why
+    assert [c.check for c in done.checks] == ["left out", "fitted"]
+    before, after = ([FoldPrediction(-nats, 900.0 * nats, 0.0, 3600.0)] * 2 for nats in (9.0, 1.0))
+    assert all(c.passed for c in prediction_checks(before, after, ["one", "two"]))
+    moving = [after[0], replace(after[1], no_change_K2s=800.0)]
+    assert [c.passed for c in prediction_checks(before, moving, ["one", "two"])] == [True, False]
+
+
 def test_a_calibration_that_only_its_own_test_gains_by_is_kept_for_that():
     """A film of half its size in the one test that is fitted; the other, which it may not see, was right before."""
     odd = measured("odd", loss=1.6)

@@ -67,7 +67,7 @@ def import_(
     else:
         draft = import_draft(file, family_template, stack_mm, units)
         text = draft.toml()
-    test = None if case is None else write_stored_case(draft, text, case)
+    test = None if case is None else write_stored_case(draft, case)
     target_file = write_import(draft, text, out or Path()) if case is None else case / "machine.toml"
     document = {
         "machine": draft.name,
