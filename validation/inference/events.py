@@ -607,11 +607,11 @@ def _first_spans(
     gains = _promised_gains(network, test, values, effect, noise, usual, others, knots)
     best: list[Span] = []
     for order in (0, 1):
-        apart: list[Span] = []
+        disjoint: list[Span] = []
         for a, b in sorted(gains, key=lambda x: -gains[x][order]):
-            if _alike((a, b), [usual], spacing) and all(b <= c or d <= a for c, d in apart):
-                apart.append((a, b))
-        best += apart[:FIRST_RUNS]
+            if _alike((a, b), [usual], spacing) and all(b <= c or d <= a for c, d in disjoint):
+                disjoint.append((a, b))
+        best += disjoint[:FIRST_RUNS]
     return spacing, best
 
 

@@ -236,13 +236,8 @@ def prediction_checks(
     only = f"; seen in {telling[0]} only, judged on its later part: not yet tested elsewhere" if part else ""
     parts = f"; of {', '.join(lone)} the later part, since only it tells what held in it" if lone and not part else ""
     words = f"{fall(was, now)} (each part predicted from the others), {better}{only}{parts}"
-    moving = [
-        f for f in after if f.no_change_K2s > STILL_K**2 * f.seconds
-    ]  # a guess of no change knows what a steady test reads
-    error, none = (
-        rms(moving),
-        float(np.sqrt(sum(f.no_change_K2s for f in moving) / max(sum(f.seconds for f in moving), 1.0))),
-    )
+    moving = [f for f in after if f.no_change_K2s > STILL_K**2 * f.seconds]  # a steady test is what it was
+    error, none = rms(moving), rms([replace(f, square_K2s=f.no_change_K2s) for f in moving])
     beside = f"{error:.2f} K where a guess of no change leaves {none:.2f} K" if moving else "nothing left out changes"
     return (
         Check("left out", sum(nats) > gain and now <= same * was, sum(nats), gain, words, part),

@@ -383,10 +383,12 @@ def _no_change(sums: Mapping[str, Sequence[tuple[float, float, float]]], sigma: 
 
     sums : what was predicted -> squared errors of the fit and of that guess over time (K2 s), and that time (s)
     """
-    moving = {
-        what: some for what, rows in sums.items() if (some := [row for row in rows if row[1] > STILL_K**2 * row[2]])
+    moving = {what: [row for row in rows if row[1] > STILL_K**2 * row[2]] for what, rows in sums.items()}
+    each = {
+        what: np.sqrt(np.sum(rows, axis=0)[:2] / sum(span for *_, span in rows))
+        for what, rows in moving.items()
+        if rows
     }
-    each = {what: np.sqrt(np.sum(rows, axis=0)[:2] / sum(span for *_, span in rows)) for what, rows in moving.items()}
     if not each:
         return ()
     what, (error, none) = max(each.items(), key=lambda x: x[1][0] / max(x[1][1], sigma))
