@@ -176,7 +176,7 @@ def _leader(candidates: Sequence[Mapping[str, Any]]) -> list[str]:
     lines += [f"Proof: {first['isolating_test']}."] if first["isolating_test"] else []
     if first["confused_with"]:
         alike = ", ".join(words.get(name) or value_words(name) for name in first["confused_with"])
-        lines.append(f"These tests and sensors cannot tell it from {alike}.")
+        lines.append(f"These tests and sensors cannot tell it from: {alike}.")
     return lines
 
 
