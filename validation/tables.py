@@ -6,7 +6,6 @@ A document that was read back from disk has the same tables as the result itself
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import replace
 from typing import Any
 
 from geom.table import Table, cell, percent, with_interval
@@ -212,9 +211,8 @@ def _pair_words(pair: str) -> str:
 
 def offers_table(rows: Iterable[Document]) -> Table:
     """What would decide between the candidates of a group."""
-    columns = "what | *kind | hours | separates | *predicted gain=gain | how"
-    every = Table.of("What would decide", rows, columns, separates=lambda o: "; ".join(o["separates"]))
-    return replace(every, folded="separates")
+    columns = "what | *kind | hours | *separates | *predicted gain=gain | how"
+    return Table.of("What would decide", rows, columns, separates=lambda o: "; ".join(o["separates"]))
 
 
 def currents(levels: Iterable[Document]) -> str:

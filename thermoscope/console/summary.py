@@ -134,7 +134,7 @@ def grid(table: Table, rows: Sequence[Sequence[Any]], width: int) -> list[tuple[
     columns = _fitting(table, whole, widths, width)
     words = [j for j in columns if not right[j] and not _numbers(whole, j)]
     while _total(widths, columns) > width and (wide := [j for j in words if widths[j] > LEAST]):
-        widths[max(wide, key=lambda j: (table.columns[j] == table.folded and widths[j] > 3 * LEAST, widths[j]))] -= 1
+        widths[max(wide, key=lambda j: (table.columns[j] == table.folded and widths[j] > 2 * LEAST, widths[j]))] -= 1
 
     def lines(cells: Sequence[str]) -> list[str]:
         parts = [wrap(cells[j], widths[j]) if j in words else [cells[j]] for j in columns]
