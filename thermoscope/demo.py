@@ -67,7 +67,7 @@ def demo(
         headline("2  Calibrated on the brake stand")
         calibrate(str(case), True, None)
     folder = open_demo(case)
-    turned = ThreadPoolExecutor().submit(old_way, folder.case)  # run after run: it needs one core
+    knob = ThreadPoolExecutor().submit(old_way, folder.case)  # run after run: it needs one core
     headline("3  Held against the road")
     with limited_lines(SHORT):
         stages = [Stage("calibrated on the stand", print_comparison(folder))]
@@ -75,7 +75,7 @@ def demo(
     headline("4  The old way: turn up the fan's air flow until the right flange agrees")
     with progress() as tell:
         tell("turning the fan's air flow")
-        fit = turned.result()
+        fit = knob.result()
     say(f"{138 * fit.factor:.0f} m3/h instead of 138 bring it closest on road-1; see below what else they do")
     stages.append(Stage(f"{KNOB} x {fit.factor:.2f} instead", fit.errors.document()))
     headline("5  What is missing?")
