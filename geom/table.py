@@ -19,7 +19,7 @@ class Table:
     """columns : in the order they are shown;  rows : most important first;  marked : words that make a row stand out
 
     keep : columns that a narrow medium leaves out last, after the first one
-    folded : the column that is never left out
+    folded : the column that is never left out, and the first to be broken into lines
     """
 
     title: str

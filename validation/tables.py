@@ -211,7 +211,7 @@ def _pair_words(pair: str) -> str:
 
 def offers_table(rows: Iterable[Document]) -> Table:
     """What would decide between the candidates of a group."""
-    columns = "what | *kind | hours | separates | *predicted gain=gain | how"
+    columns = "what | *kind | hours | *separates | *predicted gain=gain | how"
     return Table.of("What would decide", rows, columns, separates=lambda o: "; ".join(o["separates"]))
 
 

@@ -133,11 +133,8 @@ def grid(table: Table, rows: Sequence[Sequence[Any]], width: int) -> list[tuple[
     widths = [max(map(len, (h, *(row[j] for row in whole)))) for j, h in enumerate(table.columns)]
     columns = _fitting(table, whole, widths, width)
     words = [j for j in columns if not right[j] and not _numbers(whole, j)]
-    while words and _total(widths, columns) > width:
-        j = max(words, key=lambda j: widths[j])
-        if widths[j] <= LEAST:
-            break
-        widths[j] -= min(widths[j] - LEAST, _total(widths, columns) - width)
+    while _total(widths, columns) > width and (wide := [j for j in words if widths[j] > LEAST]):
+        widths[max(wide, key=lambda j: (table.columns[j] == table.folded and widths[j] > 2 * LEAST, widths[j]))] -= 1
 
     def lines(cells: Sequence[str]) -> list[str]:
         parts = [wrap(cells[j], widths[j]) if j in words else [cells[j]] for j in columns]

@@ -48,7 +48,7 @@ def curves_summary(document: Mapping[str, Any]) -> th.Summary:
     rule = th.Table.of(title, assemblies, columns, ["beyond 7 %"])
     sentence = f"{fine} of {len(assemblies)} assemblies are within the 3 to 4 % rule."
     parts: list[th.Table | str] = [rule, _repeats(document), _warming(document), *_doubts(document)]
-    return th.Summary(sentence, parts, "--json FILE")
+    return th.Summary(sentence, parts, "--json FILE has all numbers")
 
 
 def _warming(document: Mapping[str, Any]) -> th.Table:

@@ -160,4 +160,4 @@ def export_summary(document: Mapping[str, Any]) -> th.Summary:
         test = max(differences, key=lambda t: differences[t])
         tests = th.counted(len(differences), "test")
         lines.append(f"Largest difference from simulate over {tests}: {differences[test]:.2g} K ({test}).")
-    return th.Summary(sentence, [*lines, *document["files"]], "--json FILE")
+    return th.Summary(sentence, [*lines, *document["files"]], "--json FILE has all numbers")

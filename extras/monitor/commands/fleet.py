@@ -141,7 +141,7 @@ def fleet_summary(document: Mapping[str, Any]) -> th.Summary:
             others=lambda o: [th.value_words(n) for n in o["instead"]],
         ),
         th.Table.of(
-            "Parameters over the fleet",
+            "Parameters over the fleet (1: as declared)",
             sorted(document["parameters"], key=lambda p: -p["spread_percent"]),
             "parameter=words | *mean | *spread (%)=spread_percent | *differs | *drift (%/year)=drift_percent_year | "
             "from=low | to=high",
@@ -150,4 +150,4 @@ def fleet_summary(document: Mapping[str, Any]) -> th.Summary:
             high=lambda p: p.get("drift_ci95", [None, None])[1],
         ),
     ]
-    return th.Summary(" ".join(filter(None, [unequal_words(document), sentence])), parts, "--json FILE")
+    return th.Summary(" ".join(filter(None, [unequal_words(document), sentence])), parts, "--json FILE has all numbers")

@@ -59,5 +59,5 @@ def export_observer(
     sentence = f"An observer of {th.counted(len(sensors), 'sensor')}, {of.bytes} bytes from step to step."
     if gap:
         sentence += f" Its small network is within {max(gap.values()):.2g} K (rms) of the large one in the calibration."
-    th.give(document, target, lambda: th.Summary(sentence, [str(p) for p in paths], "--json FILE"))
+    th.give(document, target, lambda: th.Summary(sentence, [str(p) for p in paths], "--json FILE has all numbers"))
     return 0

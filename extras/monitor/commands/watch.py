@@ -211,7 +211,7 @@ def _alarm_text(kind: str, where: str, amplitude: float, probability: float) -> 
     if kind == "model":
         return f"the model fails at {where}: {amplitude:+.3g} W beyond doubt ({th.percent(probability)})"
     size = f" by {amplitude:+.2g} K" if np.isfinite(amplitude) else ""
-    return f"sensor {where} {kind}{size}"
+    return f"{where} {kind}{size}"
 
 
 def watch_summary(document: dict[str, Any]) -> th.Summary:
@@ -222,7 +222,7 @@ def watch_summary(document: dict[str, Any]) -> th.Summary:
     )
     parts = [
         th.Table.of(
-            "What was said",
+            "Events",
             document["events"],
             "event | from (s)=from_s | to (s)=to_s",
             event=lambda e: _alarm_text(

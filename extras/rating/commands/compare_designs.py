@@ -215,7 +215,7 @@ def designs_summary(document: Mapping[str, Any]) -> th.Summary:
     return th.Summary(
         f"{_verdict(designs)} Assumed of all: {around}.",
         [
-            f"At rest under the rated load, {loads}.",
+            f"Steady under the rated load, {loads}.",
             f"The rating of {bare} has no band yet: --bands reads the tests for it, a minute or so." if bare else "",
             th.Table("", ["", *names], figures, keep=names),
             th.Table("What differs in the files", ["key", *names], differ, keep=names),

@@ -52,7 +52,9 @@ def test_s2_begins_where_it_is_told(thermoscope, tmp_path):
     """The nearer to the limit it begins, the less is left; beyond it nothing is, and a word is no load."""
     common = ("use", "rate", small_case(tmp_path), "--limit", "winding=120", "--at", "ambient=20")
     cold, warm = (thermoscope(*common, "--start", s, "--json", "-").document for s in ("cold", "50"))
-    assert re.search(r"Largest in the tests [\d.]+ A: [\d.]+ % (in hand|beyond it)\.", rating_summary(cold).sentence)
+    assert re.search(
+        r"Largest in the tests [\d.]+ A: [\d.]+ % (in hand|of it too much)\.", rating_summary(cold).sentence
+    )
     of = [{r["form"]: r for r in d["ratings"]} for d in (cold, warm)]
     assert of[0]["S1"]["value"] == pytest.approx(of[1]["S1"]["value"])
     for form in ("S2 60 min", "S2 60 s", "S2 10 s"):

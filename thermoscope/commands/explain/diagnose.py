@@ -16,7 +16,7 @@ from thermoscope.commands.open_case import open_case
 from thermoscope.commands.stored_diagnosis import checked_diagnosis, save_diagnosis
 from thermoscope.commands.test.compare import contradiction
 from thermoscope.console.options import Case, Json, Only, Quick, Without
-from thermoscope.console.summary import Summary
+from thermoscope.console.summary import Summary, sentences
 from thermoscope.console.terminal import Progress, give, notes, progress
 from validation import tables
 from validation.parameters.unknowns import value_words
@@ -121,8 +121,7 @@ def _proposed(document: Mapping[str, Any], first: str) -> list[str]:
 
 def diagnosis_summary(document: Mapping[str, Any], called: str) -> Summary:
     """The verdict; of a wrong base only that, for it comes first.  called : what the user calls the case"""
-    sentence, case = f"{document['words'][0].upper()}{document['words'][1:]}", quote(called)
-    sentence = ". ".join(filter(None, [sentence, document.get("strained", "")]))
+    sentence, case = " ".join(sentences([*filter(None, (document["words"], document.get("strained")))])), quote(called)
     bases, steps, budgets = (document.get(key, []) for key in ("bases", "sampling", "error_budget"))
     if any(h["declared"] and h["excluded"] for h in bases):
         return Summary(sentence, [tables.bases_table(bases)], f"--json FILE; thermoscope bench bases {case}")
@@ -176,7 +175,7 @@ def _leader(candidates: Sequence[Mapping[str, Any]]) -> list[str]:
     lines += [f"Proof: {first['isolating_test']}."] if first["isolating_test"] else []
     if first["confused_with"]:
         alike = ", ".join(words.get(name) or value_words(name) for name in first["confused_with"])
-        lines.append(f"These tests and sensors cannot tell it from {alike}.")
+        lines.append(f"These tests and sensors cannot tell it from: {alike}.")
     return lines
 
 

@@ -33,7 +33,7 @@ def budget(budgets: Mapping[str, Places], steps: Steps) -> list[Table | str]:
 def in_short(budgets: Mapping[str, Places], steps: Steps) -> str:
     """The largest sum and the sample steps in a sentence."""
     rows, every = worst(budgets), sorted({step["step_s"] for step in steps.values()})
-    ends = dict.fromkeys(f"{round(h, 3):g}" for h in (*every[:1], *every[-1:]))
+    ends = dict.fromkeys(f"{float(f'{h:.3g}'):g}" for h in (*every[:1], *every[-1:]))
     sampling = f"compared every {' to '.join(ends)} s" if every else ""
     if not rows:
         return f"Readings and model are {sampling}." if sampling else ""

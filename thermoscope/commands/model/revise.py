@@ -26,6 +26,7 @@ from thermoscope.console.terminal import give, notes, progress
 from validation.comparison.compare import errors
 from validation.parameters.unknowns import strain_words, value_words
 from validation.tables import parameters_table, revision_tables
+from validation.threads import side_by_side
 
 if TYPE_CHECKING:
     from validation.revision import revise
@@ -129,7 +130,8 @@ def unmeasured(folder: Folder, result: revise.Revision) -> list[dict[str, Any]]:
     read = {c.place for t in folder.case.tests for c in t.channels}
     heated = set(network.heated)
     names = [n for n in mean_rows(network) if n in heated - read and network.places[n].kind in ("part", "node")]
-    before, after = (ends(case, test, names) for case in (folder.case, replace(folder.case, model=result.model)))
+    models = (folder.case, replace(folder.case, model=result.model))
+    before, after = side_by_side(lambda case: ends(case, test, names), models)
     out = [
         {"place": n, "test": test.name, "before_C": a, "after_C": b}
         for n, a, b in zip(names, before, after, strict=True)

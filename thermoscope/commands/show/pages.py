@@ -27,6 +27,7 @@ from thermoscope.commands.stored_diagnosis import current_diagnosis, last_diagno
 from thermoscope.console.options import Case as CaseName, Json, Out
 from thermoscope.console.summary import Summary
 from thermoscope.console.terminal import Progress, give, notes, progress, versions
+from validation.threads import side_by_side
 from viz.figures import paper
 from viz.machine.missing import placed
 
@@ -180,8 +181,8 @@ def _recording(folder: Folder, into: Path) -> Path:
         runs.fields(folder.case, s.test, s.nodes, FRAMES),
         folder.positions,
         history=runs.steps(folder),
-        revision_fields=np.array([s.field(case) for case in cases]),
-        revision_residuals=[residual_at_end(case, s.test) for case in cases],
+        revision_fields=np.array(side_by_side(s.field, cases)),
+        revision_residuals=side_by_side(lambda case: residual_at_end(case, s.test), cases),
         limits=s.limits,
     )
 
