@@ -6,6 +6,9 @@ from pathlib import Path
 from textwrap import fill
 from typing import TYPE_CHECKING
 
+from matplotlib.patches import PathPatch
+from matplotlib.path import Path as Line
+
 from geom.errors import InputError
 from viz.colours import BLUE, LIGHT, ORANGE, SKY, VERMILION
 from viz.figures import paper
@@ -87,9 +90,6 @@ def _side(ax: Axes, parts: dict[str, float], outer: float, inner: float, colours
 
 def _ribbon(ax: Axes, a: tuple[float, float], b: tuple[float, float], width: float, colour: str) -> None:
     """A band whose upper edge runs from a to b."""
-    from matplotlib.patches import PathPatch
-    from matplotlib.path import Path as Line
-
     mid = (a[0] + b[0]) / 2
     upper = [a, (mid, a[1]), (mid, b[1]), b]
     lower = [(x, y - width) for x, y in reversed(upper)]
