@@ -276,7 +276,7 @@ from viz.rendering.gl import require_gl as require_gl
 from viz.rendering.nodes import SplitMesh as SplitMesh, on_nodes as on_nodes, split as split
 from viz.rendering.scale import rounded as rounded
 from viz.rendering.scene import NOTE as NOTE, Room as Room, TITLE as TITLE, View as View
-from viz.viewer.packing import packed_integers as packed_integers, packed_numbers as packed_numbers
+from viz.viewer.part_shapes import packed_integers as packed_integers, packed_numbers as packed_numbers
 from viz.viewer.page import render as render, script as script
 from thermoscope.cli import CommandGroup as CommandGroup
 from thermoscope.bands import (

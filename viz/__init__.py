@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     from viz.figures.curves import measured_and_model as measured_and_model, residuals as residuals
     from viz.figures.errors import before_after as before_after, staircase as staircase
     from viz.figures.flows import heat_flows as heat_flows
-    from viz.figures.intervals import intervals as intervals
+    from viz.figures.bands import intervals as intervals
     from viz.figures.sankey import sankey_of_losses as sankey_of_losses
     from viz.machine.animation import animate as animate
     from viz.machine.arrows import flux_arrows as flux_arrows

@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from extras.monitor.observer import hypotheses as tests_of, sensor_faults as faults
+from extras.monitor.observer import hypotheses as tests_of
 from extras.monitor.observer.hypotheses import hypotheses
 from extras.monitor.observer.observer import CORRELATION_S
 from extras.monitor.observer.process import LONGEST_S, Process
@@ -136,12 +136,12 @@ def _data(of: ObserverModel) -> str:
         "START_K": th.USUAL_DOUBT["start"],
         "COLDEST_C": th.COLDEST,
         "HOTTEST_C": th.HOTTEST,
-        "OUTLIER_SD": faults.OUTLIER,
-        "LOST_AFTER_S": faults.LOST_S,
-        "BACK_AFTER_S": faults.BACK_S,
-        "FROZEN_AFTER_S": faults.FROZEN_S,
-        "LONGER_RUN": faults.LONGER,
-        "MOVED_SD": faults.MOTION,
+        "OUTLIER_SD": tests_of.OUTLIER,
+        "LOST_AFTER_S": tests_of.LOST_S,
+        "BACK_AFTER_S": tests_of.BACK_S,
+        "FROZEN_AFTER_S": tests_of.FROZEN_S,
+        "LONGER_RUN": tests_of.LONGER,
+        "MOVED_SD": tests_of.MOTION,
         "FORGETS_AFTER_S": tests_of.FORGETS_S,
         "SURE_FROM": tests_of.SURE,
         "DOUBT_SD": tests_of.TOLERANCE,

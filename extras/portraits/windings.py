@@ -8,10 +8,9 @@ import numpy as np
 from shapely import box
 from shapely.affinity import rotate
 
-from extras.portraits.body import Body, Finish
 from extras.portraits.making import extruded, oval, rounded, swept
 from extras.portraits.outlines import Outlines, angle_of, radii_of
-from extras.portraits.shape import Shape, joined
+from extras.portraits.shape import Body, Finish, Shape, joined
 from thermoscope import plugin as th
 
 if TYPE_CHECKING:

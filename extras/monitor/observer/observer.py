@@ -8,11 +8,10 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 from scipy.special import ndtr
 
-from extras.monitor.observer.hypotheses import OVER, SURE, TOLERANCE, Hypotheses, hypotheses
+from extras.monitor.observer.hypotheses import OVER, SURE, TOLERANCE, Hypotheses, SensorState, hypotheses
 from extras.monitor.observer.kalman import Filter, begun
 from extras.monitor.observer.process import Driven, Process
 from extras.monitor.observer.process_noise import ProcessNoise
-from extras.monitor.observer.sensor_faults import SensorState
 from thermoscope import Record, plugin as th
 
 CORRELATION_S = 60.0  # a reading's error lasts about a minute: more readings within it are no more evidence

@@ -12,11 +12,10 @@ from functools import cached_property
 import numpy as np
 
 from extras.rating.design.machine_keys import short_key
-from extras.rating.hot_spots import hot_spots
-from extras.rating.optimisation.corrections import Corrections, errors, learned
 from extras.rating.optimisation.problem import COPPER, SETTLING, Problem
 from extras.rating.optimisation.scaling import Scaling, design_parameters
-from extras.rating.optimisation.space import Variable
+from extras.rating.optimisation.space import Corrections, Variable, errors, learned
+from extras.rating.points import hot_spots
 from thermoscope import InputError, Network, plugin as th
 
 Progress = Callable[[str], None]

@@ -57,7 +57,7 @@ def write_page(
     folder: Folder, case: str, into: Path, tell: Progress, pictures: Mapping[str, Path] | None = None
 ) -> Path:
     """Write into/report.html with its pictures, drawn anew or those given; `case` is what commands call the case."""
-    from thermoscope.case_folder.stored_yardstick import yardstick_document
+    from thermoscope.case_folder.stored_comparison import yardstick_document
     from validation.comparison.error_budget import documents
     from viz.pages.report import Report, write_report
 

@@ -8,10 +8,10 @@ from small_case import small_case
 from watched import run
 
 from extras.monitor.observer import ProcessNoise, observer
+from extras.monitor.observer.hypotheses import FROZEN_S, LOST_S
 from extras.monitor.observer.observer import CORRELATION_S
 from extras.monitor.observer.process import Process, bodies_of
 from extras.monitor.observer.process_noise import most_doubtful, of_doubt
-from extras.monitor.observer.sensor_faults import FROZEN_S, LOST_S
 from lumped.integration.record import Record
 from lumped.model.build import bare_network, node_link
 from lumped.model.network import Row
