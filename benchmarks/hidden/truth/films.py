@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import numpy as np
-from numpy.typing import NDArray
 
-from hidden.truth.body import Skeleton
-from hidden.truth.machine import Film, Inputs
+from hidden.truth.body import Array, Skeleton
+from hidden.truth.machine import Film, FilmLaw, Inputs
 
-Array = NDArray[np.float64]
 G0, SIGMA, ZERO = 9.81, 5.670374e-8, 273.15
 
 
@@ -54,6 +54,11 @@ def mixed(forced: Array, still: Array) -> Array:
 def radiation(T: Array, Ta: Array, emissivity: float) -> Array:
     a, b = T + ZERO, Ta + ZERO
     return emissivity * SIGMA * (a**2 + b**2) * (a + b)
+
+
+def free_film(still: Callable[[Array, Array, float], Array], size: float, share: float, emissivity: float) -> FilmLaw:
+    """Still air on a face of a size (m), a share of what a correlation says, and radiation."""
+    return lambda T, Ta, u: share * still(T, Ta, size) + radiation(T, Ta, emissivity)
 
 
 def gap(T: Array, rpm: float, r: float, g: float) -> Array:
