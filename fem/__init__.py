@@ -24,4 +24,4 @@ from fem.solvers.solve import (
     steady as steady,
 )
 from fem.solvers.streams import Stream as Stream, cut as cut, flowing as flowing
-from fem.solvers.transient import transient as transient
+from fem.solvers.newton import transient as transient

@@ -19,9 +19,9 @@ from viz.machine.thermocouples import frame_points
 from viz.rendering import scene
 from viz.rendering.callouts import HOLLOW, draw_on_top
 from viz.rendering.cut import QUARTER, Surface, Wedge, cut_away
+from viz.rendering.ghost import covered, obstacle
 from viz.rendering.nodes import SplitMesh, on_nodes
 from viz.rendering.scene import Room, View
-from viz.rendering.visibility import covered, obstacle
 
 if TYPE_CHECKING:
     import pyvista

@@ -18,16 +18,15 @@ import rerun as rr
 
 from geom.arrays import Array
 from geom.errors import InputError
-from viz.colours import BLUE, GREEN, LIGHT, ORANGE, PURPLE, SKY, VERMILION, heat
+from viz.colours import BLUE, GREEN, LIGHT, ORANGE, PURPLE, SKY, VERMILION, decimals, heat, marks, rounded
 from viz.data import Comparison, Curve, Sensor, short
 from viz.figures.errors import PALE, error_paths
 from viz.machine.thermocouples import LABELS
 from viz.recordings.arrangement import blueprint, eye, non_overlapping, outside_outline
 from viz.rendering import scene
 from viz.rendering.cut import QUARTER, Surface, Wedge, cut_away
+from viz.rendering.ghost import covered, obstacle
 from viz.rendering.nodes import SplitMesh, on_nodes
-from viz.rendering.scale import decimals, marks, rounded
-from viz.rendering.visibility import covered, obstacle
 
 if TYPE_CHECKING:
     from measured.case import Channel

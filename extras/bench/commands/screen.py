@@ -91,8 +91,8 @@ def _by_effects(machine: th.MachineDescription, design: str) -> dict[str, Any]:
 
 
 def _by_shares(machine: th.MachineDescription, design: str) -> dict[str, Any]:
+    from extras.bench.factors.factorial import morris, sobol
     from extras.bench.factors.screening import varied
-    from extras.bench.factors.sensitivity import morris, sobol
 
     factors, responses = varied(machine)
     method = partial(morris, trajectories=TRAJECTORIES) if design == "morris" else partial(sobol, base=SAMPLES)

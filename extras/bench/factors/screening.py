@@ -8,8 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from extras.bench.factors.factorial import Design, Effects, Factor, effects
-from extras.bench.factors.sensitivity import Response, Varied
+from extras.bench.factors.factorial import Design, Effects, Factor, Response, Varied, effects
 from extras.bench.reduction.pm_network import PmSettings, Rows, pm_network, table_of
 from thermoscope import Record, plugin as th, simulate
 

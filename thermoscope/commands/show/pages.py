@@ -20,10 +20,9 @@ from measured.sensors.sampling import sampled
 from thermoscope.case_folder import runs
 from thermoscope.case_folder.folder import Folder
 from thermoscope.case_folder.history import Revision
-from thermoscope.commands.open_case import open_case_for_writing
+from thermoscope.commands.open_case import current_diagnosis, last_diagnosis, open_case_for_writing
 from thermoscope.commands.show.picture import Subject, draw_field
 from thermoscope.commands.show.viewer import viewer_page
-from thermoscope.commands.stored_diagnosis import current_diagnosis, last_diagnosis
 from thermoscope.console.options import Case as CaseName, Json, Out
 from thermoscope.console.summary import Summary
 from thermoscope.console.terminal import Progress, give, notes, progress, versions

@@ -10,8 +10,7 @@ from hidden.truth.body import Body, Joint, Skeleton
 from hidden.truth.change import Change
 from hidden.truth.draw import Draw
 from hidden.truth.effects import METER, airflow, bridge, covered, draught, fading, heating, less, stirred_gap
-from hidden.truth.films import across_gap, cylinder_still, free_film, plate_still, radiation
-from hidden.truth.losses import ALPHA, bearing, steel
+from hidden.truth.films import ALPHA, across_gap, bearing, cylinder_still, free_film, plate_still, radiation, steel
 from hidden.truth.machine import Array, Film, Inputs, Loss, Stream
 from hidden.truth.profile import Rng, levels, steady, until
 

@@ -13,8 +13,7 @@ from hidden.truth.body import Body, Joint, Skeleton
 from hidden.truth.change import Change
 from hidden.truth.draw import Draw
 from hidden.truth.effects import METER, airflow, blown, bridge, covered, draught, heating, less, spinning, warming
-from hidden.truth.films import air, free_film, plate_still
-from hidden.truth.losses import ALPHA, bearing, joule
+from hidden.truth.films import ALPHA, air, bearing, free_film, joule, plate_still
 from hidden.truth.machine import Array, Film, Inputs, Loss, Stream
 from hidden.truth.profile import Rng, levels, steady, until
 from hidden.truth.readings import Logger

@@ -15,8 +15,17 @@ from hidden.truth.body import Body, Cells, Joint, Skeleton
 from hidden.truth.change import Change
 from hidden.truth.draw import Draw
 from hidden.truth.effects import METER, airflow, bridge, covered, draught, heating, less
-from hidden.truth.films import across_gap, cylinder_still, free_film, plate_still
-from hidden.truth.losses import bearing, copper, joule, magnet_eddy, steel
+from hidden.truth.films import (
+    across_gap,
+    bearing,
+    copper,
+    cylinder_still,
+    free_film,
+    joule,
+    magnet_eddy,
+    plate_still,
+    steel,
+)
 from hidden.truth.machine import Array, Film, Inputs, Loss
 from hidden.truth.profile import Rng, levels, steady, until
 from hidden.truth.readings import Logger

@@ -10,8 +10,19 @@ from hidden.truth.body import Body, Joint, Skeleton
 from hidden.truth.change import Change
 from hidden.truth.draw import Draw
 from hidden.truth.effects import METER, airflow, covered, draught, heating, less, stirred_gap
-from hidden.truth.films import across_gap, channel, cylinder_still, free_film, plate_still, radiation, stirred
-from hidden.truth.losses import bearing, joule, magnet_eddy, steel
+from hidden.truth.films import (
+    across_gap,
+    bearing,
+    channel,
+    cylinder_still,
+    free_film,
+    joule,
+    magnet_eddy,
+    plate_still,
+    radiation,
+    steel,
+    stirred,
+)
 from hidden.truth.machine import Array, Film, Inputs, Loss, Stream
 from hidden.truth.profile import Rng, levels, steady, until
 

@@ -13,8 +13,7 @@ from hidden.truth.body import Body, Joint, Skeleton
 from hidden.truth.change import Change
 from hidden.truth.draw import Draw
 from hidden.truth.effects import METER, airflow, covered, draught, heating, joined, less, spinning, switched, warming
-from hidden.truth.films import across_gap, free_film, plate_still, radiation
-from hidden.truth.losses import ALPHA, joule
+from hidden.truth.films import ALPHA, across_gap, free_film, joule, plate_still, radiation
 from hidden.truth.machine import Array, Film, Inputs, Loss
 from hidden.truth.profile import Rng, levels, steady, until
 from hidden.truth.readings import Logger

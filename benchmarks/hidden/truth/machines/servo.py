@@ -10,8 +10,7 @@ from hidden.truth.body import Body, Joint, Skeleton
 from hidden.truth.change import Change
 from hidden.truth.draw import Draw
 from hidden.truth.effects import METER, covered, draught, heating, joined, less, spinning, switched, warming
-from hidden.truth.films import across_gap, cylinder_still, free_film, plate_still
-from hidden.truth.losses import ALPHA, joule
+from hidden.truth.films import ALPHA, across_gap, cylinder_still, free_film, joule, plate_still
 from hidden.truth.machine import Array, Film, Loss
 from hidden.truth.profile import Rng, levels, steady, until
 from hidden.truth.readings import Logger

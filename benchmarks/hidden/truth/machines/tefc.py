@@ -10,8 +10,18 @@ from hidden.truth.body import Body, Joint, Skeleton
 from hidden.truth.change import Change
 from hidden.truth.draw import Draw
 from hidden.truth.effects import METER, airflow, bridge, covered, draught, fading, heating, less, spinning, stirred_gap
-from hidden.truth.films import across_gap, cylinder_still, free_film, mixed, plate_still, radiation, stirred
-from hidden.truth.losses import bearing, joule, steel
+from hidden.truth.films import (
+    across_gap,
+    bearing,
+    cylinder_still,
+    free_film,
+    joule,
+    mixed,
+    plate_still,
+    radiation,
+    steel,
+    stirred,
+)
 from hidden.truth.machine import Array, Film, Loss
 from hidden.truth.profile import Rng, levels, steady, until
 
