@@ -122,15 +122,10 @@ def varied(machine: th.MachineDescription, load: Load | None = None) -> tuple[li
             cache[key] = run(machine, levels, test, table)
         return cache[key]
 
+    between = {"base": (0.0, 1.0), "end-winding impregnation": (POOR, GOOD)}  # of what has no levels in between
     factors = [
-        Varied("convection", 5.0, 10.0),
-        Varied("emissivity", 0.2, 0.8),
-        Varied("base", 0.0, 1.0),
-        Varied("winding impregnation", 0.2, 0.8, "impregnation"),
-        Varied("end-winding impregnation", 0.2, 0.8, "impregnation"),
-        Varied("speed", 200.0, 400.0),
-        Varied("magnetic loss", 1.0, 1.5),
-        Varied("liner gap", 0.7, 1.4),
+        Varied(f.name, *between.get(f.name, (f.low, f.high)), "impregnation" * f.name.endswith("impregnation"))
+        for f in WITH_GAP
     ]
     return factors, {
         "magnets": lambda levels: rises(levels)["magnets"],

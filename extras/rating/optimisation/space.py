@@ -41,14 +41,6 @@ class Space:
     variables: tuple[Variable, ...]
 
     @property
-    def low(self) -> th.Array:
-        return np.array([v.low for v in self.variables])
-
-    @property
-    def high(self) -> th.Array:
-        return np.array([v.high for v in self.variables])
-
-    @property
     def usual(self) -> dict[str, float]:
         """Name -> its value in the reference."""
         return {v.name: v.usual for v in self.variables}
