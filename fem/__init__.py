@@ -12,7 +12,7 @@ from fem.matrices.material import (
     laminated as laminated,
     wound as wound,
 )
-from fem.matrices.terms import CopperLoss as CopperLoss, Radiation as Radiation, Term as Term
+from fem.matrices.material import CopperLoss as CopperLoss, Radiation as Radiation, Term as Term
 from fem.matrices.winding import bundle as bundle, homogenised as homogenised, unit_cell as unit_cell
 from fem.solvers.newton import NonlinearSolution as NonlinearSolution, solve_nonlinear as solve_nonlinear
 from fem.solvers.solve import (

@@ -8,8 +8,8 @@ import sys
 from pathlib import Path
 
 import numpy as np
-from moving import moving
 
+from extras.portraits.moving import moving
 from thermoscope.case_folder.folder import load_case
 from thermoscope.case_folder.runs import before_last, by_interest, fields, temperature_range
 from thermoscope.commands.show.film import misses, model_words, title

@@ -11,9 +11,9 @@ import numpy as np
 
 from extras.monitor.observer import hypotheses as tests_of
 from extras.monitor.observer.hypotheses import hypotheses
+from extras.monitor.observer.kalman import ProcessNoise
 from extras.monitor.observer.observer import CORRELATION_S
 from extras.monitor.observer.process import LONGEST_S, Process
-from extras.monitor.observer.process_noise import ProcessNoise
 from thermoscope import InputError, MissingDependency, Network, plugin as th
 
 MOST_BYTES = 10_000  # of what has to live from step to step on a controller

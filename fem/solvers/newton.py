@@ -13,7 +13,7 @@ import scipy.sparse as sp
 from scipy.sparse.linalg import LinearOperator, gmres
 
 from fem.matrices.assembly import FieldModel
-from fem.matrices.terms import Term
+from fem.matrices.material import Term
 from fem.solvers.solve import Fluids, Solve, Steady, film_columns, from_fixed, refuse_unknown_fluid, shed
 from geom.arrays import Array as Floats
 from geom.errors import InputError

@@ -25,6 +25,7 @@ TABLE_I = (
 WITH_GAP = (*TABLE_I, Factor("H", "liner gap", 0.7, 1.4))  # mm, M2's and M1's: calibrated, not screened, in the paper
 STEP, PATH = "winding minus magnets", "R_w (mK/W)"
 RESPONSES = {"magnets": "magnets", "winding": "winding", "end winding": "winding.left", "lamination": "stator.core"}
+BATH = ("winding impregnation", "end-winding impregnation")  # filled in one and the same bath
 POOR, GOOD = 0.2, 0.8  # impregnation of the end windings, "no" and "yes"
 
 
@@ -123,10 +124,8 @@ def varied(machine: th.MachineDescription, load: Load | None = None) -> tuple[li
         return cache[key]
 
     between = {"base": (0.0, 1.0), "end-winding impregnation": (POOR, GOOD)}  # of what has no levels in between
-    factors = [
-        Varied(f.name, *between.get(f.name, (f.low, f.high)), "impregnation" * f.name.endswith("impregnation"))
-        for f in WITH_GAP
-    ]
+    limits = {f.name: between.get(f.name, (f.low, f.high)) for f in WITH_GAP}
+    factors = [Varied(n, low, high, "impregnation" * (n in BATH)) for n, (low, high) in limits.items()]
     return factors, {
         "magnets": lambda levels: rises(levels)["magnets"],
         STEP: lambda levels: rises(levels)["winding"] - rises(levels)["magnets"],

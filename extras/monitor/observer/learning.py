@@ -9,9 +9,9 @@ import numpy as np
 
 from extras.monitor.observer.constants import Constants, Sensor, with_motion
 from extras.monitor.observer.joint_filter import JointFilter
+from extras.monitor.observer.kalman import ProcessNoise
 from extras.monitor.observer.observer import Observer, observer
 from extras.monitor.observer.process import Process
-from extras.monitor.observer.process_noise import ProcessNoise
 from thermoscope import Network, Parameter, plugin as th
 
 HALF = 0.5  # of an effect: correlations that an effect follows are known within a factor

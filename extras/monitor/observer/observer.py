@@ -9,9 +9,8 @@ import numpy as np
 from scipy.special import ndtr
 
 from extras.monitor.observer.hypotheses import OVER, SURE, TOLERANCE, Hypotheses, SensorState, hypotheses
-from extras.monitor.observer.kalman import Filter, begun
+from extras.monitor.observer.kalman import Filter, ProcessNoise, begun
 from extras.monitor.observer.process import Driven, Process
-from extras.monitor.observer.process_noise import ProcessNoise
 from thermoscope import Record, plugin as th
 
 CORRELATION_S = 60.0  # a reading's error lasts about a minute: more readings within it are no more evidence

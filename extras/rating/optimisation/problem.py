@@ -9,8 +9,7 @@ from typing import Protocol
 
 import numpy as np
 
-from extras.rating.optimisation.auxiliaries import auxiliary_power
-from extras.rating.optimisation.electrics import Driven, Electrics
+from extras.rating.optimisation.electrics import Driven, Electrics, auxiliary_power
 from extras.rating.optimisation.rest import Rest, losses, rest, without_feedback
 from extras.rating.optimisation.scaling import Scaling
 from extras.rating.optimisation.space import NONE, Corrections, Space

@@ -9,9 +9,9 @@ from watched import run
 
 from extras.monitor.observer import ProcessNoise, observer
 from extras.monitor.observer.hypotheses import FROZEN_S, LOST_S
+from extras.monitor.observer.kalman import most_doubtful, of_doubt
 from extras.monitor.observer.observer import CORRELATION_S
 from extras.monitor.observer.process import Process, bodies_of
-from extras.monitor.observer.process_noise import most_doubtful, of_doubt
 from lumped.integration.record import Record
 from lumped.model.build import bare_network, node_link
 from lumped.model.network import Row

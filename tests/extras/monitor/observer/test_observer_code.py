@@ -17,8 +17,8 @@ from watched import run
 from extras.export.model import Output
 from extras.monitor.commands import observer as command
 from extras.monitor.observer import ProcessNoise, observer
+from extras.monitor.observer.kalman import of_doubt
 from extras.monitor.observer.process import Process, bodies_of
-from extras.monitor.observer.process_noise import of_doubt
 from extras.monitor.observer_code import MOST_BYTES, observer_files, observer_model
 from geom.errors import InputError
 from lumped.integration.simulate import simulate

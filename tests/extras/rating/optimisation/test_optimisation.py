@@ -9,8 +9,7 @@ import pytest
 from numpy.testing import assert_allclose
 
 from extras.rating.design.machine_keys import MachineFile
-from extras.rating.optimisation.auxiliaries import auxiliary_power, way_of
-from extras.rating.optimisation.electrics import Driven, electrics_of
+from extras.rating.optimisation.electrics import Driven, auxiliary_power, electrics_of, way_of
 from extras.rating.optimisation.problem import AUXILIARY, COPPER, PEAK, SETTLING, Problem
 from extras.rating.optimisation.rest import losses, rest, without_feedback
 from extras.rating.optimisation.search import Design, Effort, nsga2, pareto_set, unsga3
