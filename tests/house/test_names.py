@@ -46,7 +46,7 @@ ALLOWED = {  # file -> what its strings are, none of them a user's name for a pa
     "extras/rating/loss_grid.py": "columns of a loss map, NAME_W; sources by their own name, loss:NAME",
     "extras/bench/commands/law.py": "COLUMN=UNIT of an option",
     "extras/bench/reduction/pm_network.py": "nodes that this file names itself",
-    "extras/bench/reduction/transfer.py": "parameters of losses, as the networks of machines name them",
+    "extras/bench/reduction/two_paths.py": "parameters of losses, as the networks of machines name them",
     "viz/figures/flows.py": "streams that a machine's network names itself, fan:CELL",
     "geom/description/bases.py": "contacts, A|B",
     "geom/meshing/meshio_io.py": "keys of a file of meshes",

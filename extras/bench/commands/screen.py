@@ -64,7 +64,7 @@ def carry(
     json: th.JsonOption = None,
 ) -> int:
     """The calibrated model of one case on other machines. Exit code 1 if one disagrees beyond its uncertainty."""
-    from extras.bench.reduction.transfer import transferred
+    from extras.bench.reduction.two_paths import transferred
 
     with th.progress() as tell:
         calibrated = th.open_case(source, tell)
