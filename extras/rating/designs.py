@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from typing import Any
-
-import plotly.graph_objects as go
+from typing import TYPE_CHECKING, Any
 
 from thermoscope import plugin as th
+
+if TYPE_CHECKING:
+    import plotly.graph_objects as go
 
 SCALE = "Viridis"
 WORDS = {
@@ -31,6 +32,8 @@ def parallel_coordinates(
     rows: Sequence[Row], objectives: Sequence[str], variables: Mapping[str, str], *, theme: th.Theme = th.LIGHT
 ) -> go.Figure:
     """Designs as lines over objectives and variables, coloured by the first objective; ranges can be brushed."""
+    import plotly.graph_objects as go
+
     out = th.figure(theme, title={"text": "Every design, objectives first", "x": 0.02})
     words = {**{o: WORDS.get(o, o) for o in objectives}, **variables}
     axes = [{"label": th.as_text(word), "values": column(rows, n)} for n, word in words.items()]
@@ -42,6 +45,8 @@ def parallel_coordinates(
 
 def objective_space(rows: Sequence[Row], objectives: Sequence[str], *, theme: th.Theme = th.LIGHT) -> go.Figure:
     """Designs in the space of three objectives, the first, second and last; the fourth is the colour."""
+    import plotly.graph_objects as go
+
     axes = [*objectives, *objectives][:3] if len(objectives) < 3 else [objectives[0], objectives[1], objectives[-1]]
     colour = next((o for o in objectives if o not in axes), objectives[0])
     x, y, z, c = (column(rows, o) for o in (*axes, colour))
