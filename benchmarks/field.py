@@ -26,9 +26,9 @@ import numpy as np
 
 from fem.matrices.assembly import FieldModel
 from fem.matrices.grids import ring
+from fem.solvers.newton import transient
 from fem.solvers.solve import Fluids, Solver
 from fem.solvers.streams import Stream, cut, flowing
-from fem.solvers.transient import transient
 from geom import build_mesh, load_machine
 from lumped.build.pipeline import field_of
 from lumped.machine.motor import nominal_coefficients

@@ -12,7 +12,7 @@ from fem.matrices.material import (
     laminated as laminated,
     wound as wound,
 )
-from fem.matrices.terms import CopperLoss as CopperLoss, Radiation as Radiation, Term as Term
+from fem.matrices.material import CopperLoss as CopperLoss, Radiation as Radiation, Term as Term
 from fem.matrices.winding import bundle as bundle, homogenised as homogenised, unit_cell as unit_cell
 from fem.solvers.newton import NonlinearSolution as NonlinearSolution, solve_nonlinear as solve_nonlinear
 from fem.solvers.solve import (
@@ -24,4 +24,4 @@ from fem.solvers.solve import (
     steady as steady,
 )
 from fem.solvers.streams import Stream as Stream, cut as cut, flowing as flowing
-from fem.solvers.transient import transient as transient
+from fem.solvers.newton import transient as transient

@@ -20,7 +20,7 @@ from thermoscope.console.options import Json
 from thermoscope.console.summary import Summary
 from thermoscope.console.terminal import give, progress
 from thermoscope.parts import EXTRAS
-from viz.pages.pdf import BROWSERS
+from viz.pages.html import BROWSERS
 
 VULKAN = "apt-get install -y libvulkan1 mesa-vulkan-drivers"
 CHROMIUM = "apt-get install -y chromium"

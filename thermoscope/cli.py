@@ -63,7 +63,10 @@ CORE = {
         "Machines, networks, and the model as it stands.",
         "machines,import_file.import,build,crosscheck,calibrate,revise.add,revise.remove,revise.undo",
     ),
-    "test": ("Recordings: bring them in, look at them, hold the model against them.", "new,doctor,compare,quantities"),
+    "test": (
+        "Recordings: bring them in, look at them, hold the model against them.",
+        "new,doctor,compare,doctor.quantities",
+    ),
     "explain": ("What is missing, and what would show it.", "diagnose,improve,effects,answer"),
     "show": ("Report, pictures, the workbench in the browser.", "pages.report,pages.render,picture,film,viewer,plan"),
     "use": ("Run the model, and take it elsewhere.", "simulate"),

@@ -264,19 +264,19 @@ from viz.data import Comparison as Comparison, Sensor as Sensor, short as short,
 from viz.figures import paper as paper
 from viz.figures.candidates import amplitude as amplitude, matrix as matrix
 from viz.live.curves import confusion as confusion, sensor as sensor
-from viz.live.style import as_text as as_text, figure as figure
+from viz.live.curves import as_text as as_text, figure as figure
 from viz.machine.animation import WRITERS as WRITERS, Pulses as Pulses
 from viz.machine.field import machine_row as machine_row
 from viz.pages import html as html
-from viz.pages.pdf import write_pdf as write_pdf
+from viz.pages.html import write_pdf as write_pdf
 from viz.pages.words import verdict as verdict
 from viz.rendering import scene as scene
 from viz.rendering.cut import QUARTER as QUARTER, Wedge as Wedge, cut_away as cut_away, framed as framed
 from viz.rendering.gl import require_gl as require_gl
 from viz.rendering.nodes import SplitMesh as SplitMesh, on_nodes as on_nodes, split as split
-from viz.rendering.scale import rounded as rounded
+from viz.colours import rounded as rounded
 from viz.rendering.scene import NOTE as NOTE, Room as Room, TITLE as TITLE, View as View
-from viz.viewer.packing import packed_integers as packed_integers, packed_numbers as packed_numbers
+from viz.viewer.part_shapes import packed_integers as packed_integers, packed_numbers as packed_numbers
 from viz.viewer.page import render as render, script as script
 from thermoscope.cli import CommandGroup as CommandGroup
 from thermoscope.bands import (
@@ -323,10 +323,7 @@ from thermoscope.commands.open_case import (
 from thermoscope.commands.show.pages import NO_PDF as NO_PDF, provenance as provenance, write_page as write_page
 from thermoscope.commands.show.picture import Subject as Subject
 from thermoscope.commands.show.viewer import stored_documents as stored_documents, viewer_documents as viewer_documents
-from thermoscope.commands.stored_diagnosis import (
-    current_diagnosis as current_diagnosis,
-    save_diagnosis as save_diagnosis,
-)
+from thermoscope.commands.open_case import current_diagnosis as current_diagnosis, save_diagnosis as save_diagnosis
 from thermoscope.commands.test.new import drafts_of as drafts_of, model_of_case as model_of_case, save_case as save_case
 from thermoscope.commands.use.simulate import short_of as short_of
 from thermoscope.console.summary import Summary as Summary, sentences as sentences

@@ -13,8 +13,8 @@ if TYPE_CHECKING:
     from viz.figures.curves import measured_and_model as measured_and_model, residuals as residuals
     from viz.figures.errors import before_after as before_after, staircase as staircase
     from viz.figures.flows import heat_flows as heat_flows
-    from viz.figures.intervals import intervals as intervals
-    from viz.figures.sankey import sankey_of_losses as sankey_of_losses
+    from viz.figures.bands import intervals as intervals
+    from viz.figures.flows import sankey_of_losses as sankey_of_losses
     from viz.machine.animation import animate as animate
     from viz.machine.arrows import flux_arrows as flux_arrows
     from viz.machine.field import (
@@ -28,7 +28,7 @@ if TYPE_CHECKING:
     from viz.machine.missing import missing_in_machine as missing_in_machine
     from viz.machine.network import network_in_machine as network_in_machine
     from viz.machine.parts import exploded as exploded, regions as regions
-    from viz.pages.pdf import write_pdf as write_pdf
+    from viz.pages.html import write_pdf as write_pdf
     from viz.pages.report import Report as Report, write_report as write_report
     from viz.recordings.recording import write_recording as write_recording
     from viz.rendering.cut import HALF as HALF, QUARTER as QUARTER, Wedge as Wedge

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 from validation.parameters.unknowns import value_words
 from viz.colours import LIGHT, Theme
 from viz.data import input_title
-from viz.live.style import as_text, figure
+from viz.live.curves import as_text, figure
 
 if TYPE_CHECKING:
     import plotly.graph_objects as go

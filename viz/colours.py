@@ -1,7 +1,11 @@
-"""Colours, chosen once: few, safe for colour-blind readers, light enough that shading and edges stay visible."""
+"""Colours, chosen once: few, safe for colour-blind readers, light enough that shading and edges stay visible.
+
+Colour scales span the data and are marked at round numbers.
+"""
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from functools import lru_cache
@@ -117,3 +121,40 @@ def part_colours(parts: Iterable[str], identities: Mapping[str, Identity]) -> di
     """A muted colour per part by what it is: copper for windings, steel for iron, aluminium for the shell."""
     roles = {part: identities[part].role if part in identities else None for part in parts}
     return {part: _OF_ROLE.get(role, "#A9A9B8") if role else "#A9A9B8" for part, role in roles.items()}
+
+
+INTERVALS = 8  # between marks at most: few enough to read
+FINE = 10  # parts of an interval to which the ends are widened: a scale from 12 to 93 wastes nothing, and says both
+LEAST = 0.8  # K or W: a uniform field has two ends 0.1 apart
+
+
+def step_of(span: float) -> float:
+    """The smallest of 1, 2 and 5 times a power of ten that covers a span in at most eight steps."""
+    rough = max(span, LEAST) / INTERVALS
+    power = 10.0 ** math.floor(math.log10(rough))
+    return next(round(n * power, 12) for n in (1, 2, 5, 10) if n * power >= rough * (1 - 1e-9))
+
+
+def rounded(low: float, high: float) -> tuple[float, float]:
+    """The range widened to whole tenths of the steps between its marks; one that is round already stays as it is."""
+    while True:
+        fine = step_of(high - low) / FINE
+        first = math.floor(low / fine + 1e-6)
+        last = max(math.ceil(high / fine - 1e-6), first + 1)
+        ends = round(first * fine, 12), round(last * fine, 12)
+        if ends == (low, high):
+            return ends
+        low, high = ends
+
+
+def marks(low: float, high: float) -> list[float]:
+    """Both ends of a rounded range, and the round numbers between that are half a step or more from them."""
+    step = step_of(high - low)
+    first, last = math.ceil(low / step + 0.5 - 1e-9), math.floor(high / step - 0.5 + 1e-9)
+    return [low, *(round(i * step, 12) for i in range(first, last + 1)), high]
+
+
+def decimals(low: float, high: float) -> int:
+    """Digits after the point that all marks of a rounded range need."""
+    every, most = marks(low, high), max(0, -math.floor(math.log10(step_of(high - low) / FINE) + 1e-9))
+    return next((n for n in range(most) if all(abs(round(m, n) - m) < 1e-9 for m in every)), most)

@@ -42,7 +42,7 @@ from extras.workbench.steps import comparing_job  # noqa: E402
 from extras.workbench.tabs import Tabs  # noqa: E402
 from thermoscope.case_folder.folder import load_case  # noqa: E402
 from thermoscope.cli import main as command_line  # noqa: E402
-from thermoscope.commands.stored_diagnosis import fingerprint  # noqa: E402
+from thermoscope.commands.open_case import fingerprint  # noqa: E402
 from thermoscope.plugin import DROP_BYTES  # noqa: E402
 
 COMMANDS = {

@@ -1,22 +1,33 @@
-"""Cases through the diagnosis, one line each, in as many processes as wanted; what is done is not done again."""
+"""Cases through the diagnosis, a line each; what an addition is worth on held-out tests, what a proposed test says.
+
+In as many processes as wanted; what is done is not done again.
+"""
 
 from __future__ import annotations
 
 import time
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
+from typing import Any
 
 from joblib import Parallel, delayed
 
 from hidden import odds
-from hidden.after import followed, worth
 from hidden.answer import answer
-from hidden.cases import Label, edits_of, records_of
+from hidden.cases import Label, edits_of, hidden_in, records_of
 from hidden.folders import diagnosed, found_in, words_of
+from hidden.kinds import KINDS
+from hidden.odds import unordered
 from hidden.peers import peers
-from hidden.user import case_of
+from hidden.truth.archetype import measured
+from hidden.truth.candidate_tests import CANDIDATE_TESTS, carried_out
+from hidden.user import case_of, test_of
+from measured.case import Case
 from scripts.published import add_lines, json_lines
+from validation import Revision, add, calibrate
+from validation.inference.evidence import candidates
+from validation.planning.rivals import DECISIVE
 
 LABELS, ANSWERS = "labels.jsonl", "answers.jsonl"
 COMPARED, FOLLOWED = ("one", "nothing"), ("one", "pair")  # classes peers are asked about; what is said is acted on
@@ -93,3 +104,49 @@ def line(label: Label, found: dict) -> str:
     cost = f"{nats:.1f} nats  {found['made_s']:.0f}+{found['cpu_s']:.0f} s"
     told = f"{best:.1f}/{found['threshold']:.1f}  rmse {found['rmse_K']:.2f}/{found['floor_K']:.2f} K"
     return f"{label.case:24s} {truth + size:44s} {found['verdict']:9s} {lead}{more}  {told}  {cost}"
+
+
+Answer = dict[str, Any]
+
+
+def worth(case: Case, label: Label, found: Answer) -> dict[str, float] | None:
+    """Held-out error (K) calibrated as it is, with what was claimed first, and with the truth; one effect only.
+
+    Nothing claimed leaves the error as it is.
+    """
+    if label.group != "one":
+        return None
+    base = calibrate(case, roles=("calibrate", "validate"))
+    ready, before = replace(case, model=base.model), held_out(base)
+    names = set(unordered(label.right[0]))
+    true = next((n for n in possible(case) if unordered(n) in names), None)
+    best = held_out(add(ready, true)) if true else before
+    claims = found["verdict"] in ("named", "group", "several") and found["groups"]
+    if not claims:
+        return {"before": before, "claimed": before, "best": best}
+    first = found["groups"][0][0]
+    claimed = best if first == true else held_out(add(ready, first))
+    return {"before": before, "claimed": claimed, "best": best}
+
+
+def possible(case: Case) -> list[str]:
+    """Every effect of the catalogue that can sit somewhere in a case."""
+    return [one.name for one in candidates(case)]
+
+
+def held_out(done: Revision) -> float:
+    """Error (K) after a revision on the held-out test."""
+    return next(t.after for t in done.tests if t.role == "hold-out")
+
+
+def followed(case: Case, label: Label, found: Answer) -> Answer | None:
+    """The best test that is said to decide, carried out on the true machine, and what the diagnosis says then."""
+    kind = KINDS[label.machine]
+    said = [(name, factor) for name, gain, _, factor in found["next"] if gain >= DECISIVE and name in CANDIDATE_TESTS]
+    if found["verdict"] != "group" or not said:
+        return None
+    name, factor = said[0]
+    plan = carried_out(name, kind.plans[3], factor)
+    (record,) = measured(kind, label.seed, hidden_in(kind, label), (plan,))
+    longer = replace(case, tests=(test_of(kind, case.model.network, record), *case.tests))
+    return {"test": name, **answer(longer, plan=False)}

@@ -4,7 +4,7 @@ import csv
 from pathlib import Path
 
 from extras.rating.designs import WORDS, parallel_coordinates
-from viz.live.style import save
+from viz.live.curves import save
 
 HERE = Path(__file__).parent
 DESIGNS = HERE.parents[1] / "out/designs/jacket-one/pareto.csv"

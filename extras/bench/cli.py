@@ -5,5 +5,5 @@ from __future__ import annotations
 from thermoscope import plugin as th
 
 WORDS = "The published test procedure, from resistances to screened models."
-NAMES = "protocol,report,curves,law,bases,screen,screen.two-paths,screen.carry,live"
+NAMES = "protocol,protocol.report,curves,law,bases,screen,screen.two-paths,screen.carry,live"
 commands = th.CommandGroup("bench", f"{__package__}.commands", NAMES, WORDS)

@@ -9,11 +9,11 @@ from typing import Any
 
 import numpy as np
 
-from extras.monitor.observer import hypotheses as tests_of, sensor_faults as faults
+from extras.monitor.observer import hypotheses as tests_of
 from extras.monitor.observer.hypotheses import hypotheses
+from extras.monitor.observer.kalman import ProcessNoise
 from extras.monitor.observer.observer import CORRELATION_S
 from extras.monitor.observer.process import LONGEST_S, Process
-from extras.monitor.observer.process_noise import ProcessNoise
 from thermoscope import InputError, MissingDependency, Network, plugin as th
 
 MOST_BYTES = 10_000  # of what has to live from step to step on a controller
@@ -33,14 +33,12 @@ def code_writer() -> Any:
 class ObserverModel:
     """model : the network with the missing heat of every body as an input;  given : the inputs that a user sets
 
-    table_sd (m,) W that the table of doubt allows;  rise_K : usual rise of the tests
-    bias (s,) K that the sensors read too much
+    rise_K : usual rise of the tests;  bias (s,) K that the sensors read too much
     """
 
     model: Any  # of the writer
     process: Process
     noise: ProcessNoise
-    table_sd: th.Array
     rise_K: float
     sensors: tuple[th.Channel, ...]
     heats: tuple[str, ...]
@@ -62,7 +60,6 @@ class ObserverModel:
 def observer_model(
     process: Process,
     noise: ProcessNoise,
-    table_sd: th.Array,
     rise_K: float,
     sensors: Sequence[th.Channel],
     reference: th.Reference,
@@ -74,7 +71,7 @@ def observer_model(
     network, names = with_missing_heat(process.network, process.bodies)
     model = writer.packed(network, process.values, reference, looks)
     off = np.zeros(len(sensors)) if bias is None else bias
-    result = ObserverModel(model, process, noise, table_sd, rise_K, tuple(sensors), names, off)
+    result = ObserverModel(model, process, noise, rise_K, tuple(sensors), names, off)
     if result.bytes > MOST_BYTES:
         what = (
             f"an observer of {process.size} temperatures and heats with {len(sensors)} sensors has {result.bytes} bytes"
@@ -128,7 +125,7 @@ def _data(of: ObserverModel) -> str:
     network, rows = of.process.network, [c.row for c in of.sensors]
     sigma = np.array([c.sigma_K for c in of.sensors])
     names = tuple(c.name for c in of.sensors)
-    odds = hypotheses(names, sigma, np.hypot(sigma, th.USUAL_DOUBT["gain"] * of.rise_K), of.process.bodies, of.table_sd)
+    odds = hypotheses(names, sigma, np.hypot(sigma, th.USUAL_DOUBT["gain"] * of.rise_K), of.process.bodies, of.noise.sd)
     numbers: Mapping[str, float] = {
         "NOISE_S": of.noise.time_s,
         "LONGEST_S": LONGEST_S,
@@ -136,12 +133,12 @@ def _data(of: ObserverModel) -> str:
         "START_K": th.USUAL_DOUBT["start"],
         "COLDEST_C": th.COLDEST,
         "HOTTEST_C": th.HOTTEST,
-        "OUTLIER_SD": faults.OUTLIER,
-        "LOST_AFTER_S": faults.LOST_S,
-        "BACK_AFTER_S": faults.BACK_S,
-        "FROZEN_AFTER_S": faults.FROZEN_S,
-        "LONGER_RUN": faults.LONGER,
-        "MOVED_SD": faults.MOTION,
+        "OUTLIER_SD": tests_of.OUTLIER,
+        "LOST_AFTER_S": tests_of.LOST_S,
+        "BACK_AFTER_S": tests_of.BACK_S,
+        "FROZEN_AFTER_S": tests_of.FROZEN_S,
+        "LONGER_RUN": tests_of.LONGER,
+        "MOVED_SD": tests_of.MOTION,
         "FORGETS_AFTER_S": tests_of.FORGETS_S,
         "SURE_FROM": tests_of.SURE,
         "DOUBT_SD": tests_of.TOLERANCE,
@@ -166,7 +163,7 @@ def _data(of: ObserverModel) -> str:
             reals("SENSOR_SD", sigma),
             reals("SENSOR_BIAS", of.bias),
             reals("LAG_S", [c.lag_s for c in of.sensors]),
-            reals("TABLE_SD", of.table_sd),
+            reals("TABLE_SD", of.noise.sd),
             reals("ALLOWED_SD", odds.tolerance),
             reals("SPREAD_SD", odds.spread),
             reals("LOG_PRIOR", odds.prior),

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from extras.portraits.body import Body
+from extras.portraits.shape import Body
 from thermoscope import plugin as th
 
 if TYPE_CHECKING:

@@ -6,12 +6,11 @@ from collections.abc import Callable
 
 import numpy as np
 
-from extras.portraits.body import Body, Finish
 from extras.portraits.ends import bearing, shaft, shield
 from extras.portraits.making import extruded, revolved, rounded
 from extras.portraits.outlines import Outlines
 from extras.portraits.rotating import TURN, commutator, cowl, shaft_fan, wheel
-from extras.portraits.shape import joined
+from extras.portraits.shape import Body, Finish, joined
 from extras.portraits.shell import fittings, housing, standing
 from extras.portraits.windings import wound
 from thermoscope import plugin as th

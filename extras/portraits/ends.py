@@ -5,10 +5,9 @@ from __future__ import annotations
 import numpy as np
 import shapely
 
-from extras.portraits.body import Body, Finish
 from extras.portraits.making import ball, bolt, box, extruded, revolved, rod, rounded
 from extras.portraits.outlines import Outlines
-from extras.portraits.shape import Shape, joined
+from extras.portraits.shape import Body, Finish, Shape, joined
 from thermoscope import plugin as th
 
 RIBS, BOLTS, COVER_BOLTS = 8, 8, 4  # for the eye only

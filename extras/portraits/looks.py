@@ -13,11 +13,10 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from extras.portraits.body import Body
 from extras.portraits.cutting import cut_body
 from extras.portraits.dressed import dressed
 from extras.portraits.portrait import framed
-from extras.portraits.shape import Shape
+from extras.portraits.shape import Body, Shape
 from thermoscope import plugin as th
 
 if TYPE_CHECKING:

@@ -2,15 +2,13 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
+import shapely
+from shapely import Polygon, box as rectangle
+from shapely.geometry.polygon import orient
 
 from extras.portraits.shape import Shape, joined
 from thermoscope import plugin as th
-
-if TYPE_CHECKING:
-    from shapely import Polygon
 
 SECTIONS = 120  # of a full turn: a silhouette of 0.2 m then shows no corners at 1280 pixels
 CORNER = 4  # pieces of a rounded corner
@@ -31,8 +29,6 @@ def rounded(polygon: Polygon, convex: float, concave: float = 0.0) -> Polygon:
 
 def revolved(section: Polygon, sections: int = SECTIONS) -> Shape:
     """A section, radius and place along the axis (m), turned about the machine's axis."""
-    from shapely.geometry.polygon import orient
-
     section = orient(section)
     rings = [np.asarray(ring.coords)[:-1] for ring in (section.exterior, *section.interiors)]
     return joined([_turned(ring, sections) for ring in rings])
@@ -55,9 +51,6 @@ def _turned(ring: th.Array, sections: int) -> Shape:
 
 def extruded(outline: Polygon, z0: float, z1: float, round_m: float = 0.0) -> Shape:
     """An outline between two planes (m); its edges there are rounded off by `round_m` where it is wide enough."""
-    from shapely import Polygon
-    from shapely.geometry.polygon import orient
-
     outline = orient(outline)
     rings = [np.asarray(ring.coords)[:-1, :2] for ring in (outline.exterior, *outline.interiors)]
     angle = np.linspace(0.0, np.pi / 2, CORNER)
@@ -107,8 +100,6 @@ def _stacked(layers: list[list[th.Array]], heights: list[float], end: Polygon) -
 
 def filled(outline: Polygon) -> th.Ints:
     """Triangles that fill an outline, by the numbers of its corners: outer ring, then holes; anticlockwise."""
-    import shapely
-
     rings = [np.asarray(ring.coords)[:-1, :2] for ring in (outline.exterior, *outline.interiors)]
     number = {tuple(p): i for i, p in enumerate(np.concatenate(rings).tolist())}
     pieces = shapely.constrained_delaunay_triangles(outline).geoms
@@ -150,32 +141,24 @@ def oval(width: float, height: float, corners: int = 14, power: float = 3.0) -> 
 
 
 def ball(radius: float) -> Shape:
-    from shapely import Polygon
-
     t = np.linspace(-np.pi / 2, np.pi / 2, 13)
     return revolved(Polygon(radius * np.stack([np.cos(t) * (np.abs(t) < 1.57), np.sin(t)], axis=1)), 20)
 
 
 def box(width: float, length: float, height: float, round_m: float) -> Shape:
     """Standing on its own origin: x and y from the middle, z up (m)."""
-    from shapely import box as rectangle
-
     flat = rectangle(-width / 2, -length / 2, width / 2, length / 2)
     return extruded(rounded(flat, min(2 * round_m, 0.3 * width, 0.3 * length)), 0.0, height, round_m)
 
 
 def rod(radius: float, length: float, round_m: float = 0.0, sections: int = 24) -> Shape:
     """A round bar along z from its own origin (m)."""
-    from shapely import Polygon
-
     k = round_m
     return revolved(Polygon([(0, 0), (radius, 0), (radius, length - k), (radius - k, length), (0, length)]), sections)
 
 
 def hexagon(radius: float) -> Polygon:
     """Of a nut or a head, by the radius of its corners (m)."""
-    from shapely import Polygon
-
     t = np.pi / 3 * np.arange(6)
     return Polygon(radius * np.stack([np.cos(t), np.sin(t)], axis=1))
 

@@ -8,6 +8,7 @@ from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+import shapely
 
 from thermoscope import plugin as th
 
@@ -56,8 +57,6 @@ class Outlines:
 
         Small bores and cuts do not count: what most rays from the axis meet is the section, if its volume is right.
         """
-        import shapely
-
         prisms = [(self.of(prism), *prism[1:]) for prism in part.prisms]
         sections = [_along(prisms, 2 * np.pi * (k + 0.37) / RAYS) for k in range(RAYS)]
         common = Counter(sections).most_common(1)[0][0]
@@ -73,8 +72,6 @@ class Outlines:
 
 def _along(prisms: list[tuple[Polygon, float, float]], angle: float) -> tuple[tuple[float, float, float, float], ...]:
     """Where a ray from the axis is inside the prisms: from and to, radius and place (m), to a tenth of a millimetre."""
-    import shapely
-
     out = []
     for outline, z0, z1 in prisms:
         x0, y0, x1, y1 = outline.bounds

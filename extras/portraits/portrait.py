@@ -11,10 +11,9 @@ import numpy as np
 from scipy.ndimage import gaussian_filter, maximum_filter
 from scipy.sparse import csr_matrix, vstack
 
-from extras.portraits.body import Body, Finish
 from extras.portraits.cutting import cut_body
 from extras.portraits.dressed import dressed
-from extras.portraits.shape import Shape
+from extras.portraits.shape import Body, Finish, Shape
 from thermoscope import plugin as th
 
 if TYPE_CHECKING:

@@ -5,10 +5,9 @@ from __future__ import annotations
 import numpy as np
 import shapely
 
-from extras.portraits.body import Body, Finish
 from extras.portraits.making import box, extruded, oval, revolved, rod, rounded, swept
 from extras.portraits.outlines import Outlines, angle_of, radii_of
-from extras.portraits.shape import Shape, joined
+from extras.portraits.shape import Body, Finish, Shape, joined
 from thermoscope import plugin as th
 
 BLADES = 9  # of a shaft fan that is not meshed

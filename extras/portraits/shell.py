@@ -5,10 +5,9 @@ from __future__ import annotations
 import numpy as np
 import shapely
 
-from extras.portraits.body import Body, Finish
 from extras.portraits.making import bolt, box, extruded, hexagon, oval, revolved, rod, rounded, swept
 from extras.portraits.outlines import Outlines
-from extras.portraits.shape import Shape, joined
+from extras.portraits.shape import Body, Finish, Shape, joined
 from thermoscope import plugin as th
 
 BOX_ANGLE = np.deg2rad(62.0)  # beside the top: behind the usual cut

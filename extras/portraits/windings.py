@@ -5,11 +5,12 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 import numpy as np
+from shapely import box
+from shapely.affinity import rotate
 
-from extras.portraits.body import Body, Finish
 from extras.portraits.making import extruded, oval, rounded, swept
 from extras.portraits.outlines import Outlines, angle_of, radii_of
-from extras.portraits.shape import Shape, joined
+from extras.portraits.shape import Body, Finish, Shape, joined
 from thermoscope import plugin as th
 
 if TYPE_CHECKING:
@@ -87,9 +88,6 @@ def _poles(o: Outlines, part: th.Part) -> list[Shape]:
 
 
 def _frame(sections: list[tuple[Polygon, float, float]], angle: float) -> Shape:
-    from shapely import box
-    from shapely.affinity import rotate
-
     mine = [(rotate(q, np.pi / 2 - angle, origin=(0, 0), use_radians=True), z0, z1) for q, z0, z1 in sections]
     mine = [(q, z0, z1) for q, z0, z1 in mine if abs(angle_of(q) - np.pi / 2) < np.pi / 4 and q.centroid.y > 0]
     x0, y0 = min(q.bounds[0] for q, _, _ in mine), min(q.bounds[1] for q, _, _ in mine)

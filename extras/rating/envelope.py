@@ -1,4 +1,4 @@
-"""Ratings: the load at which the first limit is reached, for ever, for a time, or in a duty; with its band.
+"""Ratings: the load at which the first limit is reached, for ever, for a time, in a duty, or over a repeated cycle.
 
 T(load) = limit,   sd of the load = sd of T at the limit / (dT / d load)
 """
@@ -6,15 +6,15 @@ T(load) = limit,   sd of the load = sd of T at the limit / (dT / d load)
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cache
 
 import numpy as np
 from scipy.optimize import brentq
 
 from extras.rating.operation import Operation
-from extras.rating.points import RUNAWAY_C, S3, S6, Model
-from thermoscope import InputError, plugin as th
+from extras.rating.points import REPEATS_K, RUNAWAY_C, S3, S6, Model
+from thermoscope import InputError, Record, ThermoscopeError, plugin as th
 
 LARGEST = 50.0  # of the reference load; beyond, no temperature limits
 CLOSE = 1e-3  # of a load: a tenth of what inputs are known to
@@ -123,3 +123,67 @@ def until(
         low, high = high, min(4.0 * high, longest)
     low = max(low, 1e-3)
     return float(brentq(left, low, high, rtol=1e-3)) if over > 0.0 > left(low) else low
+
+
+LONGEST_S = 7 * 86400.0  # a week of the same cycle; heavier machines do not settle slower
+
+
+@dataclass(frozen=True)
+class Lap:
+    """One lap of a cycle. record : its inputs and boundaries at load 1;  loads : the inputs that a load multiplies"""
+
+    record: Record
+    loads: tuple[str, ...]
+
+    def at(self, load: float) -> Record:
+        inputs = {n: load * np.asarray(u) if n in self.loads else u for n, u in self.record.inputs.items()}
+        return replace(self.record, inputs=inputs)
+
+    def mean(self, op: Operation) -> tuple[Operation, float]:
+        """Where its mean lies: the operation, and the load of the same mean square."""
+        inputs = {n: float(np.mean(u)) for n, u in self.record.inputs.items()}
+        boundaries = {b: float(np.mean(T)) for b, T in self.record.boundaries.items()}
+        square = float(np.mean(np.square(self.record.inputs[op.main])))
+        average = op.moved({n: inputs[n] for n in op.inputs if n not in self.loads}, boundaries)
+        return average, square**0.5 / abs(op.inputs[op.main])
+
+
+def share_for_ever(model: Model, op: Operation, limits: Mapping[str, float], lap: Lap) -> tuple[float, str]:
+    """The share of the cycle's load that may be carried lap after lap, and the place that limits.
+
+    inf, "" where no share within reach does. Raises InputError where a limit is exceeded without any load.
+    """
+    around, load = lap.mean(op)
+    if load == 0.0:
+        raise InputError(f"'{op.main}' is zero all along", "--cycle", "a cycle with a load")
+    limit = reached(
+        lambda share: model.again_and_again(around, lap.at(share), share * load, None), limits, "cycle", None
+    )
+    return limit.load, limit.at
+
+
+def time_to_limit(model: Model, op: Operation, limits: Mapping[str, float], lap: Lap) -> float:
+    """Seconds from cold until the whole cycle, lap after lap, reaches the first limit; inf if it never does."""
+    around, _ = lap.mean(op)
+    most, stand, laps = np.array(list(limits.values())), model.start(around, None, None), 0
+    span = float(lap.record.time[-1] - lap.record.time[0])
+    while laps * span < LONGEST_S:
+        try:
+            T, end = model.run(lap.record, stand)
+        except ThermoscopeError:
+            return laps * span
+        over = np.flatnonzero(np.any(most <= T, axis=1))
+        if over.size:
+            return laps * span + _crossing(lap.record.time, T - most, int(over[0]))
+        if np.abs(end.x - stand.x).max() < REPEATS_K:
+            break
+        stand, laps = model.at(around, end.x), laps + 1
+    return float("inf")
+
+
+def _crossing(time: th.Array, excess: th.Array, k: int) -> float:
+    """Seconds of the lap at which the first place is at its limit, straight between samples k - 1 and k."""
+    if k == 0:
+        return 0.0
+    a, b = float(excess[k - 1].max()), float(excess[k].max())
+    return float(time[k - 1] - time[0] + (time[k] - time[k - 1]) * a / (a - b))

@@ -53,8 +53,7 @@ def operation(
 
     Raises InputError where nothing says what an input is, or nothing carries a load.
     """
-    laws = [*(x.law for x in network.links), *(x.law for x in network.sources)]
-    reads = dict.fromkeys(n for law in laws for n in law.reads if n != th.CLOCK)
+    reads = dict.fromkeys(n for x in network.elements for n in x.law.reads if n != th.CLOCK)
     for name in fixed:
         if name not in (*reads, *network.boundaries):
             raise InputError(

@@ -8,10 +8,9 @@ from pathlib import Path
 
 import numpy as np
 
-from extras.rating.hot_spots import MEAN, hot_spots
 from extras.rating.loss_grid import SPEED, TORQUE, loss_grid, with_losses
 from extras.rating.operation import Operation, air_boundaries, coolant_boundaries, operation
-from extras.rating.points import Model
+from extras.rating.points import MEAN, Model, hot_spots
 from thermoscope import InputError, Network, plugin as th
 
 AMBIENT_C = 40.0  # IEC 60034-1: what a machine is rated in where nothing else is said

@@ -9,9 +9,9 @@ from collections.abc import Callable, Coroutine, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
-from extras.workbench import live, revisions as ledger, steps
-from extras.workbench.appearance import Appearance
-from extras.workbench.display import Display
+from extras.workbench import steps
+from extras.workbench.appearance import Appearance, at, same, undone
+from extras.workbench.display import LOOK_S, Display, newest, say_done
 from extras.workbench.dropped import DROP_FOLDER, Dropped
 from extras.workbench.jobs import FailedError, Job, StoppedError
 from extras.workbench.machines import Bench, Drawing
@@ -44,7 +44,7 @@ class Session:
     @property
     def folder(self) -> th.Folder:
         """The case with this tab's model."""
-        return ledger.at(self.bench.folder, self.history)
+        return at(self.bench.folder, self.history)
 
     @property
     def file(self) -> Path:
@@ -116,7 +116,7 @@ class Session:
 
     async def undo(self) -> None:
         """One step back. That is a revision too, so nothing is lost."""
-        back = ledger.undone(self.history)
+        back = undone(self.history)
         if back is not None and not self.state.busy and self._write(back):
             await self._show(self.history)
             with self.state:
@@ -239,18 +239,18 @@ class Session:
     async def watch_bench(self) -> None:
         """Show what a run on the bench writes into the case, until the tab is closed."""
         while not self._closed:
-            file = live.newest(self.bench.folder.settings.path)
+            file = newest(self.bench.folder.settings.path)
             if file is not None and (mtime := file.stat().st_mtime) != self._seen:
                 self._seen = mtime
                 with self.state:
                     self.shown.show_bench(file)
-            await asyncio.sleep(live.LOOK_S)
+            await asyncio.sleep(LOOK_S)
 
     def done(self) -> None:
         """The set point that the bench asks for is there."""
-        file = live.newest(self.bench.folder.settings.path)
+        file = newest(self.bench.folder.settings.path)
         if file is not None and self.state.live and self.state.live["asks"]:
-            live.say_done(file)
+            say_done(file)
             with self.state:
                 self.state.live = {**self.state.live, "asks": False}
 
@@ -283,9 +283,9 @@ class Session:
 
     async def _show(self, history: th.History) -> None:
         """The model that `history` ends with, from memory where it was shown before."""
-        look = next((look for r, look in self._known if ledger.same(r, history.last)), None)
+        look = next((look for r, look in self._known if same(r, history.last)), None)
         if look is None:
-            folder = ledger.at(self.bench.folder, history)
+            folder = at(self.bench.folder, history)
             look = await self._calculate("Running the model", steps.appearance, folder)
         if look is not None:
             with self.state:
@@ -294,7 +294,7 @@ class Session:
 
     def _keep(self, look: Appearance) -> None:
         last = self.history.last
-        self._known = [*((r, x) for r, x in self._known if not ledger.same(r, last)), (last, look)][-REMEMBERED:]
+        self._known = [*((r, x) for r, x in self._known if not same(r, last)), (last, look)][-REMEMBERED:]
         self.shown.model(self.history, look)
         self.diagnosis = th.current_diagnosis(self.folder)
         self.shown.show_candidates(self.diagnosis)

@@ -7,9 +7,8 @@ from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from extras.workbench.appearance import Appearance, appearance_of
+from extras.workbench.appearance import Appearance, appearance_of, at
 from extras.workbench.jobs import Job
-from extras.workbench.revisions import at
 from thermoscope import plugin as th
 
 if TYPE_CHECKING:

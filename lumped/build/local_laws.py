@@ -11,7 +11,7 @@ from collections.abc import Mapping
 import numpy as np
 
 from fem.matrices.assembly import FieldModel
-from fem.matrices.terms import CopperLoss, Radiation, Term
+from fem.matrices.material import CopperLoss, Radiation, Term
 from fem.solvers.newton import NonlinearSolution, solve_nonlinear
 from fem.solvers.solve import Fluids, Solver
 from lumped.build.crosscheck import CrossCheck, Shares, fluid_nodes

@@ -10,9 +10,8 @@ from typing import Any
 import numpy as np
 from scipy.stats import t as student
 
-from extras.bench.measuring.repeats import Repeats, normalised_error, pooled_curves, repeats
-from extras.bench.reduction.transfer import Transfer, end_errors, transferred
-from extras.bench.reduction.two_paths import TwoPaths, of_test
+from extras.bench.measuring.warming import Repeats, normalised_error, pooled_curves, repeats
+from extras.bench.reduction.two_paths import Transfer, TwoPaths, end_errors, of_test, transferred
 from geom import load_machine
 from lumped.model.network import Network
 from measured.case import Case, Test

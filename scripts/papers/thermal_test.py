@@ -6,9 +6,8 @@ from functools import cache
 
 import numpy as np
 
-from extras.bench.factors.factorial import full
+from extras.bench.factors.factorial import Ranking, full, morris, sobol
 from extras.bench.factors.screening import STEP, TABLE_I, WITH_GAP, Screening, screen, varied
-from extras.bench.factors.sensitivity import Ranking, morris, sobol
 from extras.bench.figure import screened
 from geom import load_machine
 from measured.electrical.meters import OHMMETER, VOLTMETER, Meter, Range

@@ -6,12 +6,12 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from hidden import judge
-from hidden.after import held_out
 from hidden.answer import answer
 from hidden.cases import SHARES, Label, plan
 from hidden.kinds import KINDS
 from hidden.page import markdown
 from hidden.peers import peers
+from hidden.run import held_out
 from hidden.score import met, rows
 from hidden.sizes import sizes
 from hidden.truth.archetype import measured, truly

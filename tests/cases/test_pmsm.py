@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 from paper_pages import differences
 
-from extras.bench.measuring.repeats import repeats
-from extras.bench.reduction.transfer import end_errors
+from extras.bench.measuring.warming import repeats
+from extras.bench.reduction.two_paths import end_errors
 from scripts.papers import machines
 from scripts.pmsm_cases import TESTS, folder_of, text
 from thermoscope.case_folder.folder import load_case

@@ -6,8 +6,8 @@ from named_grids import bar
 
 from fem.matrices.assembly import assemble
 from fem.matrices.material import isotropic
+from fem.solvers.newton import transient
 from fem.solvers.solve import Fluids, Solver, only_fixed, steady
-from fem.solvers.transient import transient
 
 GIVEN = 1e9  # stands for a given wall temperature, W/m2/K
 

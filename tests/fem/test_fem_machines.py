@@ -5,8 +5,7 @@ import pytest
 from library_machines import DISTINCT
 
 from fem.matrices.assembly import assemble
-from fem.matrices.material import Conductivity
-from fem.matrices.terms import CopperLoss, Radiation
+from fem.matrices.material import Conductivity, CopperLoss, Radiation
 from fem.solvers.newton import solve_nonlinear
 from fem.solvers.solve import Solver, steady
 from fem.solvers.streams import Stream, cut, flowing

@@ -12,12 +12,10 @@ from scipy.optimize import brentq
 import fem
 from fem.matrices.assembly import assemble
 from fem.matrices.grids import box
-from fem.matrices.material import isotropic
-from fem.matrices.terms import CopperLoss, Radiation, Term
+from fem.matrices.material import CopperLoss, Radiation, Term, isotropic
 from fem.solvers import newton
-from fem.solvers.newton import solve_nonlinear
+from fem.solvers.newton import solve_nonlinear, transient
 from fem.solvers.solve import Iterative, Solver, only_fixed
-from fem.solvers.transient import transient
 from geom.constants import ALPHA_CU, SIGMA, ZERO_C
 from geom.errors import InputError
 

@@ -9,8 +9,8 @@ from scipy.optimize import brentq
 from fem.matrices.assembly import assemble
 from fem.matrices.grids import box
 from fem.matrices.material import isotropic
+from fem.solvers.newton import transient
 from fem.solvers.solve import Solver, only_fixed
-from fem.solvers.transient import transient
 
 L, k, rho_cp, h = 0.05, 2.0, 2e6, 80.0  # Bi = 2
 

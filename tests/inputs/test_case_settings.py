@@ -6,7 +6,7 @@ import pytest
 from command_line import answered, refusal
 from input_cases import case_of, edited
 
-from thermoscope.commands.stored_diagnosis import fingerprint
+from thermoscope.commands.open_case import fingerprint
 
 STAND = "tests/stand.toml"
 TIME = 'time = "time_s"'

@@ -206,7 +206,7 @@ def test_a_fault_nobody_foresaw_is_one_line(monkeypatch):
     def fails(json=None):
         raise ZeroDivisionError("by\nzero")
 
-    monkeypatch.setattr("thermoscope.commands.test.quantities.quantities", fails)
+    monkeypatch.setattr("thermoscope.commands.test.doctor.quantities", fails)
     done = answered("test", "quantities")
     assert (done.code, done.out) == (2, "")
     assert done.errors == ["error: ZeroDivisionError: by zero; a fault of the program: --debug shows where"]

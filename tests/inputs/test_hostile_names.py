@@ -17,8 +17,8 @@ import tomlkit
 from hostile import Tags, hostile_names
 from scipy.io import loadmat
 
+from extras.export.compilers import Compiled
 from extras.export.document import document, mat
-from extras.export.drive import Compiled
 from extras.export.fmu import description, identifier
 from extras.export.model import Output, Signal, packed
 from geom.description.names import DEVICES, FORBIDDEN, LETTERS, file_stem, is_plain, plain_header

@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from functools import partial
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 
@@ -320,8 +319,7 @@ def _complete(network: Network, cycle: Cycle, where: str) -> None:
     if cycle.drive is not None:
         steady = {p: np.full(cycle.record.time.size, 20.0) for p in cycle.watched}
         have |= set(cycle.drive(steady))
-    items: Sequence[Any] = (*network.links, *network.sources)
-    for item in items:
+    for item in network.elements:
         for name in item.law.reads:
             if name not in have:
                 right = f'a column with input = "{name}", or [inputs] {name} = ...'

@@ -8,7 +8,7 @@ from itertools import combinations
 
 import numpy as np
 
-from lumped.model.network import Link, Network, Source
+from lumped.model.network import Network
 from lumped.transfer.laws import InputPower
 from measured.headers.words import COLD, is_spoken
 from measured.recordings.sheet import Column
@@ -245,8 +245,7 @@ def _switched(patients: list[Patient], network: Network) -> Iterator[Finding]:
         levels = levels[np.isfinite(levels)]
         if not any(np.array_equal(levels, pair) for pair in SWITCHES):
             continue
-        items: list[Link | Source] = [*network.links, *network.sources]
-        for item in items:
+        for item in network.elements:
             terms = item.law.terms if isinstance(item.law, InputPower) else ()
             for _, _, exponent in (t for t in terms if t[0] == name and t[2] != 1.0):
                 yield Finding(

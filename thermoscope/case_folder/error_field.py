@@ -1,4 +1,7 @@
-"""Measured minus modelled between the sensors, by the model's own covariance at the end of a test."""
+"""What the viewer shows of a test beside temperatures: the error between the sensors, and heat between nodes.
+
+The error is interpolated by the model's own covariance at the end of a test.
+"""
 
 from __future__ import annotations
 
@@ -6,8 +9,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from geom.arrays import Array
+from lumped.integration.balance import balance
 from lumped.integration.simulate import simulate
-from measured.case import Channel, Test
+from measured.case import Case, Channel, Test
 from thermoscope.case_folder.folder import Folder
 from validation.bands.posterior import deviation
 from validation.calibration.model_error import with_doubts
@@ -17,6 +22,7 @@ from validation.parameters.unknowns import standing
 
 if TYPE_CHECKING:
     from viz.rendering.nodes import SplitMesh
+    from viz.viewer.part_shapes import NetworkRun
 
 
 def error_gain(folder: Folder, test: Test, nodes: SplitMesh) -> tuple[tuple[Channel, ...], Interpolated]:
@@ -42,3 +48,24 @@ def error_gain(folder: Folder, test: Test, nodes: SplitMesh) -> tuple[tuple[Chan
 def last_fifth(test: Test) -> slice:
     """Of its samples."""
     return slice(int(0.8 * len(test.time)), None)
+
+
+def network_run(case: Case, test: Test, times: Array) -> NetworkRun:
+    """At the times (s) of a test: node -> degC; heat between nodes, the mean over the step that ends there."""
+    from viz.figures.flows import heat_flows, last_running_step
+    from viz.viewer.part_shapes import NetworkRun
+
+    (network, values), run = heat_model(standing(case), case.model.values), record(test, {})
+    heat = balance(network, run, values)
+    at = np.searchsorted(heat.time, times).clip(1, heat.time.size - 1)
+    mean = {n: heat.z[at, i] for i, n in enumerate([*network.states, *network.boundaries])}
+    flows = heat_flows(network, heat, last_running_step(network, heat)).flows
+    conductance: dict[tuple[str, str], float] = {}
+    for f in flows:
+        conductance[f.start, f.end] = conductance.get((f.start, f.end), 0.0) + f.conductance
+    watts = {pair: np.zeros(len(at)) for pair in conductance}
+    for link in network.links:
+        start, end = (network.places[p].part if p in network.places else p for p in link.places)
+        if (start, end) in watts and link.kind != "stream":
+            watts[start, end] += heat.power(link.name)[at - 1]
+    return NetworkRun(mean, watts, conductance)

@@ -91,7 +91,7 @@ class Folder:
     @cached_property
     def yardstick(self) -> Yardstick | None:
         """What plain models leave on these tests; None where the tests teach nothing."""
-        from thermoscope.case_folder.stored_yardstick import stored_yardstick
+        from thermoscope.case_folder.stored_comparison import stored_yardstick
 
         return stored_yardstick(self.case)
 

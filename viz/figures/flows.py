@@ -1,15 +1,26 @@
-"""Heat through every link of a network over one step of a run, sorted for drawing."""
+"""Heat through every link of a network over one step of a run, and as ribbons whose width is power."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
+from pathlib import Path
+from textwrap import fill
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from geom.arrays import Array
+from geom.errors import InputError
 from lumped.integration.balance import Balance
 from lumped.model.network import Link, Network
 from validation.parameters.unknowns import value_words
+from viz.colours import BLUE, LIGHT, ORANGE, SKY, VERMILION
+from viz.figures import paper
+from viz.labels import spread_labels
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
 
 
 @dataclass(frozen=True)
@@ -91,3 +102,84 @@ def conductance(network: Network, link: Link, ends: tuple[str, str], watts: floa
     mine = link.rows == mean
     difference = float(link.vals[mine] @ z[link.cols[mine]])
     return abs(watts / difference) * float(link.vals[mine & (link.cols == mean)].sum()) if difference else 0.0
+
+
+SMALL = 0.01  # of the total: smaller exits are drawn as one
+LINE = 26  # letters of a line of a name
+WARMS, COOLS, ELSEWHERE = "warms the machine", "the machine cools", "elsewhere"
+LOW, HIGH = 0.3, 1.3  # of the total: the drawing reaches below and above the trunk
+GAP = 0.065  # of the total between ribbons: nearly the height of a name; less where there are many
+
+
+@paper.styled
+def sankey_of_losses(heat: Heat, *, title: str = "", png: str | Path | None = None) -> Figure:
+    """Losses and what a machine that cools gives up on the left, exits and what is stored on the right (W)."""
+    # Exits by size: parallel streams as one, small ones as 'elsewhere', then what warms the machine
+    out: dict[str, float] = {}
+    for name, watts in heat.out.items():
+        name = name.partition(":")[0]
+        out[name] = out.get(name, 0.0) + watts
+    least = SMALL * sum(heat.losses.values())
+    large = {k: v for k, v in sorted(out.items(), key=lambda kv: -kv[1]) if v >= least}
+    rest = sum(v for k, v in out.items() if k not in large)
+    tail = {ELSEWHERE: rest, WARMS: heat.stored}
+    left, right = entries(heat), large | {k: v for k, v in tail.items() if v >= least}
+    total = sum(left.values())
+    if sum(heat.losses.values()) <= 0:
+        raise InputError("no losses to draw", "sankey", "a machine that is running")
+    figure, (ax,) = paper.subplots(8.4, 4.4)
+    _side(ax, left, 0.0, 0.46, dict.fromkeys(left, VERMILION) | {COOLS: ORANGE}, total)
+    _side(ax, right, 1.0, 0.54, {k: colour_of(k, heat) for k in right}, total)
+    ax.fill_between([0.46, 0.54], 0, total, color=LIGHT.ink, lw=0)
+    ax.text(0.5, total * 1.04, f"{total:.0f} W", ha="center", weight="bold", fontsize=10)
+    ax.set(xlim=(-0.32, 1.32), ylim=(-LOW * total, HIGH * total))
+    ax.axis("off")
+    ax.set_title(title, loc="left")
+    return paper.save(figure, png)
+
+
+def entries(heat: Heat) -> dict[str, float]:
+    """Losses by size, then what the machine gives up where more leaves it than is lost."""
+    losses = {k: v for k, v in sorted(heat.losses.items(), key=lambda kv: -kv[1]) if v > 0}
+    least = SMALL * sum(losses.values())
+    return losses | ({COOLS: -heat.stored} if -heat.stored >= least else {})
+
+
+def colour_of(name: str, heat: Heat) -> str:
+    """What a stream carries off is darker than what faces give up."""
+    streams = {stream.partition(":")[0] for stream in heat.streams}
+    return {WARMS: ORANGE, ELSEWHERE: LIGHT.faint}.get(name, BLUE if name in streams else SKY)
+
+
+def _side(ax: Axes, parts: dict[str, float], outer: float, inner: float, colours: dict[str, str], total: float) -> None:
+    """Ribbons from a column at `outer`, spread out so that names fit, to the trunk at `inner`."""
+    gap = min(GAP, (HIGH + LOW - 1) / max(len(parts) - 1, 1)) * total
+    room = sum(parts.values()) + gap * (len(parts) - 1)
+    y, at = total, (total + room) / 2 if room > total else total
+    middles, sign = [], -1 if outer < inner else 1
+    for name, watts in parts.items():
+        _ribbon(ax, (outer, at), (inner, y), watts, colours[name])
+        middles.append(at - watts / 2)
+        y, at = y - watts, at - watts - gap
+    heights = spread_labels(middles[::-1], -LOW * total, HIGH * total, 0.075 * total)[::-1]
+    for (name, watts), height in zip(parts.items(), heights, strict=True):
+        ax.text(
+            outer + 0.02 * sign,
+            height,
+            fill(f"{name}\u00a0\u00a0{watts:.0f}\u00a0W", LINE),
+            ha="right" if sign < 0 else "left",
+            va="center",
+            fontsize=9,
+        )
+
+
+def _ribbon(ax: Axes, a: tuple[float, float], b: tuple[float, float], width: float, colour: str) -> None:
+    """A band whose upper edge runs from a to b."""
+    from matplotlib.patches import PathPatch
+    from matplotlib.path import Path as Line
+
+    mid = (a[0] + b[0]) / 2
+    upper = [a, (mid, a[1]), (mid, b[1]), b]
+    lower = [(x, y - width) for x, y in reversed(upper)]
+    codes = [Line.MOVETO, *[Line.CURVE4] * 3, Line.LINETO, *[Line.CURVE4] * 3, Line.CLOSEPOLY]
+    ax.add_patch(PathPatch(Line([*upper, *lower, upper[0]], codes), facecolor=colour, alpha=0.75, lw=0))

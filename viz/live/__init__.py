@@ -1,6 +1,6 @@
 """Figures to move about in: plotly, for the workbench, notebooks and pages that may be 5 MB.
 
-Each function returns a plotly figure; viz.live.style.save writes it as HTML, or as PNG or SVG where a Chromium is
+Each function returns a plotly figure; viz.live.curves.save writes it as HTML, or as PNG or SVG where a Chromium is
 installed. The drawings on paper (viz.figures) need no browser.
 """
 
@@ -18,6 +18,6 @@ if TYPE_CHECKING:
         residuals as residuals,
         sensor as sensor,
     )
-    from viz.live.style import save as save
+    from viz.live.curves import save as save
 
 __getattr__, __dir__ = loaded_when_used(__name__, __file__)

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
+from PIL import Image, ImageColor
 
 from geom.arrays import Array, Mask
 from geom.errors import InputError, MissingDependency
@@ -18,13 +19,12 @@ from viz.machine.thermocouples import frame_points
 from viz.rendering import scene
 from viz.rendering.callouts import HOLLOW, draw_on_top
 from viz.rendering.cut import QUARTER, Surface, Wedge, cut_away
+from viz.rendering.ghost import covered, obstacle
 from viz.rendering.nodes import SplitMesh, on_nodes
 from viz.rendering.scene import Room, View
-from viz.rendering.visibility import covered, obstacle
 
 if TYPE_CHECKING:
     import pyvista
-    from PIL import Image
 
 PALETTE = 24  # pictures that a GIF's colours are taken from
 BITS, ROUNDS = 5, 3  # of a channel by which colours are counted; of k-means after the median cut
@@ -120,8 +120,6 @@ class Pulses:
 
 def _gif(path: Path, pictures: list[NDArray[np.uint8]], frames_per_second: float) -> Path:
     """A looping GIF with one palette, taken from pictures all along the way."""
-    from PIL import Image
-
     palette = _palette(pictures)
     frames = [Image.fromarray(one).quantize(palette=palette, dither=Image.Dither.NONE) for one in pictures]
     pause = round(1000 / frames_per_second)
@@ -131,8 +129,6 @@ def _gif(path: Path, pictures: list[NDArray[np.uint8]], frames_per_second: float
 
 def _palette(pictures: list[NDArray[np.uint8]]) -> Image.Image:
     """255 colours. Each colour has the root of its share to say: else paper and shell leave none to small hot parts."""
-    from PIL import Image, ImageColor
-
     sample = np.linspace(0, len(pictures) - 1, min(PALETTE, len(pictures))).astype(int)
     some = np.concatenate([pictures[i][::2, ::2].reshape(-1, 3) for i in sample])
     key = (some >> (8 - BITS)).astype(int) @ [1 << 2 * BITS, 1 << BITS, 1]

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from geom.arrays import Array
-from viz.colours import LIGHT, Theme, heat, missing, power
+from viz.colours import LIGHT, Theme, heat, missing, power, rounded
 from viz.data import LATE, Sensor
 from viz.machine.thermocouples import LABELS, Marked, frame_points, label_texts, marked
 from viz.rendering import scene
@@ -21,7 +21,6 @@ from viz.rendering.callouts import draw_on_top, label_room
 from viz.rendering.cut import QUARTER, Surface, Wedge, cut_away
 from viz.rendering.ghost import OPACITY, Ghosted
 from viz.rendering.nodes import SplitMesh, on_nodes
-from viz.rendering.scale import rounded
 from viz.rendering.scene import BAR, NOTE, TITLE, Room, View
 
 if TYPE_CHECKING:

@@ -10,15 +10,14 @@ import numpy as np
 
 from geom.errors import InputError
 from validation.inference.missing_heat import is_located
-from viz.colours import BLUE, LIGHT, VERMILION, Theme, missing
+from viz.colours import BLUE, LIGHT, VERMILION, Theme, missing, rounded
 from viz.labels import signed
 from viz.rendering import scene
 from viz.rendering.callouts import Label, callouts, width
 from viz.rendering.cut import QUARTER, Wedge, cut_away
+from viz.rendering.ghost import anchors
 from viz.rendering.nodes import SplitMesh
-from viz.rendering.scale import rounded
 from viz.rendering.scene import NOTE, TITLE, Room, View
-from viz.rendering.visibility import anchors
 
 if TYPE_CHECKING:
     import pyvista

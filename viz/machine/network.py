@@ -11,13 +11,12 @@ import numpy as np
 
 from geom.arrays import Array
 from geom.meshing.mesh import NamedMesh
-from viz.colours import LIGHT, Theme, heat, power
+from viz.colours import LIGHT, Theme, heat, power, rounded
 from viz.figures.flows import Heat
 from viz.rendering import scene
 from viz.rendering.callouts import Label, callouts, draw_on_top, label_room, pixel, text
 from viz.rendering.cut import HALF, cut_away
 from viz.rendering.nodes import SplitMesh, split
-from viz.rendering.scale import rounded
 from viz.rendering.scene import Room, View
 
 if TYPE_CHECKING:

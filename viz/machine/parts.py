@@ -10,14 +10,13 @@ import numpy as np
 
 from geom.arrays import Array
 from geom.description.roles import Identity, Role
-from viz.colours import LIGHT, Theme, heat, part_colours, rgb
+from viz.colours import LIGHT, Theme, heat, part_colours, rgb, rounded
 from viz.rendering import scene
 from viz.rendering.callouts import Label, callouts, label_room, text
 from viz.rendering.cut import QUARTER, Surface, Wedge, cut_away, exposed
+from viz.rendering.ghost import anchors
 from viz.rendering.nodes import SplitMesh, on_nodes
-from viz.rendering.scale import rounded
 from viz.rendering.scene import TITLE, Room, View
-from viz.rendering.visibility import anchors
 
 if TYPE_CHECKING:
     import pyvista

@@ -15,9 +15,8 @@ from viz.labels import signed
 from viz.rendering import scene
 from viz.rendering.callouts import Label, callouts, dot
 from viz.rendering.cut import Surface
-from viz.rendering.ghost import Ghosted, ghosted
+from viz.rendering.ghost import SLACK, Ghosted, covered, distance, ghosted, obstacle
 from viz.rendering.scene import View
-from viz.rendering.visibility import SLACK, covered, distance, obstacle
 
 if TYPE_CHECKING:
     import pyvista

@@ -1,14 +1,21 @@
-"""Small pieces of a page. Everything that comes from outside is escaped."""
+"""Small pieces of a page, and a page as PDF with whatever converter this computer has.
+
+Everything that comes from outside is escaped.
+"""
 
 from __future__ import annotations
 
 import base64
 import re
+import shutil
+import subprocess
 from collections.abc import Iterable, Mapping, Sequence
 from html import escape
 from importlib.resources import files
+from importlib.util import find_spec
 from math import isfinite
 from pathlib import Path
+from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING, Any
 
 from geom.table import Table, cell
@@ -116,3 +123,29 @@ def _cell(value: Any, words: Mapping[str, str]) -> str:
         return "–"
     css = {"over": "bad", "over (hot)": "bad", "over (cold)": "cold", "within": "ok"}.get(word)
     return f'<span class="{css}">{escape(word)}</span>' if css else escape(word)
+
+
+BROWSERS = ("chromium", "chromium-browser", "google-chrome", "microsoft-edge")
+QUIET = ["--headless", "--disable-gpu", "--no-sandbox", "--no-first-run", "--disable-extensions"]
+QUIET += ["--no-pdf-header-footer"]
+LONGEST_S = 180  # a browser that needs more hangs
+
+
+def write_pdf(page: Path) -> Path | None:
+    """Write PAGE.pdf beside an HTML page by WeasyPrint or a Chromium; None where there is neither."""
+    pdf = page.with_suffix(".pdf")
+    if find_spec("weasyprint") is not None:
+        from weasyprint import HTML
+
+        HTML(str(page)).write_pdf(str(pdf))
+        return pdf
+    browser = next(filter(None, map(shutil.which, BROWSERS)), None)
+    return None if browser is None else _printed(browser, page, pdf)
+
+
+def _printed(browser: str, page: Path, pdf: Path) -> Path | None:
+    """By a browser without a window, its profile in a folder that is thrown away; None if it fails."""
+    with TemporaryDirectory() as profile:
+        files = [f"--user-data-dir={profile}", f"--print-to-pdf={pdf.resolve()}", page.resolve().as_uri()]
+        process = subprocess.run([browser, *QUIET, *files], capture_output=True, timeout=LONGEST_S, check=False)
+    return pdf if process.returncode == 0 and pdf.is_file() else None

@@ -21,7 +21,7 @@ from validation.comparison.uncertainty import RULE
 from validation.parameters.unknowns import value_words
 from viz.data import Comparison
 from viz.figures import bands, candidates, curves, errors, paper
-from viz.figures.intervals import intervals
+from viz.figures.bands import intervals
 from viz.machine.missing import placed
 from viz.pages import html, words
 

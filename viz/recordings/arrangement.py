@@ -2,16 +2,15 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
+import rerun as rr
+import rerun.blueprint as rrb
 
 from geom.arrays import Array
 from viz.data import Comparison, short
 from viz.rendering.scene import View
-
-if TYPE_CHECKING:
-    import rerun.blueprint as rrb
 
 SPEED = 360.0  # times as fast as the test: an hour in ten seconds
 NAME = 0.17, 0.045  # width and height of a sensor's name, share of the machine's diagonal in the first view
@@ -21,9 +20,6 @@ DISTANCE = 1.1  # of the machine's diagonal: fills the view at rerun's own angle
 
 def blueprint(comparison: Comparison, first: str, points: Array, with_history: bool) -> rrb.Blueprint:
     """The views; the curves of channel `first` lie on top, the time axis spans the test, the camera sees `points`."""
-    import rerun as rr
-    import rerun.blueprint as rrb
-
     end = float(comparison.test.time[-1])
     names = sorted((c.name for c in comparison.channels), key=lambda name: name != first)
     low = rrb.Corner2D.RightBottom  # free where a machine warms up
@@ -83,14 +79,10 @@ def outside_outline(places: Array, machine: Array) -> Array:
 
 
 def _bar() -> rrb.Spatial2DView:
-    import rerun.blueprint as rrb
-
     return rrb.Spatial2DView(origin="scale", name="°C", background=[255, 255, 255])
 
 
 def _machine(comparison: Comparison, points: Array) -> rrb.Spatial3DView:
-    import rerun.blueprint as rrb
-
     middle = (points.min(axis=0) + points.max(axis=0)) / 2
     first = rrb.EyeControls3D(position=eye(points), look_target=middle, eye_up=View().up)
     return rrb.Spatial3DView(
@@ -103,15 +95,10 @@ def _machine(comparison: Comparison, points: Array) -> rrb.Spatial3DView:
 
 
 def _text(origin: str, name: str) -> rrb.TextDocumentView:
-    import rerun.blueprint as rrb
-
     return rrb.TextDocumentView(origin=origin, name=name)
 
 
 def _over_time(origin: str, name: str, end: float, legend: rrb.Corner2D | None = None) -> rrb.TimeSeriesView:
-    import rerun as rr
-    import rerun.blueprint as rrb
-
     at = rrb.TimeRangeBoundary.absolute
     axis = rrb.TimeAxis(view_range=rr.TimeRange(start=at(seconds=0.0), end=at(seconds=end)))
     return rrb.TimeSeriesView(origin=origin, name=name, axis_x=axis, plot_legend=legend)

@@ -14,23 +14,21 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+import rerun as rr
 
 from geom.arrays import Array
 from geom.errors import InputError
-from viz.colours import BLUE, GREEN, LIGHT, ORANGE, PURPLE, SKY, VERMILION, heat
+from viz.colours import BLUE, GREEN, LIGHT, ORANGE, PURPLE, SKY, VERMILION, decimals, heat, marks, rounded
 from viz.data import Comparison, Curve, Sensor, short
 from viz.figures.errors import PALE, error_paths
 from viz.machine.thermocouples import LABELS
 from viz.recordings.arrangement import blueprint, eye, non_overlapping, outside_outline
 from viz.rendering import scene
 from viz.rendering.cut import QUARTER, Surface, Wedge, cut_away
+from viz.rendering.ghost import covered, obstacle
 from viz.rendering.nodes import SplitMesh, on_nodes
-from viz.rendering.scale import decimals, marks, rounded
-from viz.rendering.visibility import covered, obstacle
 
 if TYPE_CHECKING:
-    import rerun as rr
-
     from measured.case import Channel
 
 MARKED, MARK = re.compile(r"([^\w\s])"), r"\\\1"  # signs that Markdown could read, each taken as it is
@@ -59,8 +57,6 @@ def write_recording(
     revision_residuals : for each of these channel -> measured - modelled (K) then
     limits : of the colour scale (degC), widened to round numbers; those of all fields if not given
     """
-    import rerun as rr
-
     times, fields = np.asarray(frames[0], float), on_nodes(nodes, frames[1])
     if fields.shape[:1] != times.shape:
         raise InputError(f"{len(times)} times but {len(fields)} fields", "recording", "one field per time")
@@ -91,8 +87,6 @@ def _machine(
     revisions: Array | None,
     limits: tuple[float, float],
 ) -> None:
-    import rerun as rr
-
     stream.log("machine", rr.ViewCoordinates.RIGHT_HAND_Y_UP, static=True)
     mesh = rr.Mesh3D(vertex_positions=surface.points, triangle_indices=surface.triangles)
     stream.log("machine/field", mesh, static=True)
@@ -111,8 +105,6 @@ def _colours(
     stream: rr.RecordingStream, surface: Surface, index: Any, fields: Array, limits: tuple[float, float]
 ) -> None:
     """Vertex colours for every entry of `index`; the geometry is not repeated."""
-    import rerun as rr
-
     share = (surface.values(fields.T).T - limits[0]) / max(limits[1] - limits[0], 1e-9)
     rgba = heat()(share, bytes=True)
     columns = rr.Mesh3D.columns(vertex_colors=rgba.reshape(-1, 4)).partition([rgba.shape[1]] * len(rgba))
@@ -127,8 +119,6 @@ def _sensors(
     revisions: Sequence[Mapping[str, float]],
     surface: Surface,
 ) -> None:
-    import rerun as rr
-
     channels = [channel for channel in c.channels if channel.name in positions]
     if not channels:
         return
@@ -151,8 +141,6 @@ def _names(
     stream: rr.RecordingStream, channels: Sequence[Channel], positions: Mapping[str, Sequence[float]], surface: Surface
 ) -> None:
     """Names of the first that have room; what the machine hides has its name beside it, on a line from its place."""
-    import rerun as rr
-
     places = np.array([positions[channel.name] for channel in channels])
     hidden = covered(obstacle(surface), places, eye(surface.points))
     at = np.where(hidden[:, None], outside_outline(places, surface.points), places)
@@ -174,8 +162,6 @@ def _markers(
     stream: rr.RecordingStream, c: Comparison, channels: Sequence[Channel], index: Any, residual: Array
 ) -> None:
     """Colours of the sensors for every entry of `index`, from residuals (n, n_sensors) K."""
-    import rerun as rr
-
     colours = [
         rgba(Sensor(channel.name, (0, 0, 0), r, c.limit_K(channel)).colour)
         for row in residual
@@ -187,8 +173,6 @@ def _markers(
 
 def _curves(stream: rr.RecordingStream, c: Comparison) -> None:
     """Entities: measured and model of each channel, the earlier model where there is one, and the residual."""
-    import rerun as rr
-
     for channel in c.channels:
         name = rr.escape_entity_path_part(channel.name)
         for curve in c.temperatures(channel):
@@ -205,8 +189,6 @@ def _series(stream: rr.RecordingStream, path: str, time: Array, curve: Curve) ->
 
 
 def _revisions(stream: rr.RecordingStream, history: Sequence[Mapping[str, Any]]) -> None:
-    import rerun as rr
-
     for (name, role), errors in error_paths(history).items():
         path = f"error/{rr.escape_entity_path_part(name)}"
         colour, width = (BLUE, 4.0) if role == "hold-out" else (PALE, 2.0)
@@ -236,8 +218,6 @@ GAP = 14  # pixels from the bar to its numbers
 
 def colour_bar(stream: rr.RecordingStream, low: float, high: float) -> None:
     """A picture of the scale from a rounded range (degC), its marks beside it."""
-    import rerun as rr
-
     ramp = (np.asarray(heat()(np.linspace(1.0, 0.0, HIGH)))[:, :3] * 255).astype(np.uint8)
     stream.log("scale/bar", rr.Image(np.repeat(ramp[:, None], WIDE, axis=1)), static=True)
     at = marks(low, high)
@@ -255,8 +235,6 @@ def colour_bar(stream: rr.RecordingStream, low: float, high: float) -> None:
 
 def inputs(stream: rr.RecordingStream, comparison: Comparison, timeline: str) -> None:
     """A curve for each input of the test, as a share of its largest value, which its name tells."""
-    import rerun as rr
-
     test = comparison.test
     for (name, values), colour in zip(test.inputs.items(), cycle(COLOURS), strict=False):
         value = np.broadcast_to(np.asarray(values, float), np.shape(test.time))
@@ -267,8 +245,6 @@ def inputs(stream: rr.RecordingStream, comparison: Comparison, timeline: str) ->
 
 def time_column(timeline: str, seconds: Array) -> rr.TimeColumn:
     """The times (n,) s of a line's values."""
-    import rerun as rr
-
     return rr.TimeColumn(timeline, duration=np.asarray(seconds, float))
 
 
@@ -276,8 +252,6 @@ def line(
     stream: rr.RecordingStream, path: str, index: rr.TimeColumn, y: Array, colour: str, name: str, **style: Any
 ) -> None:
     """A named line of values (n,) at the places of `index`."""
-    import rerun as rr
-
     stream.log(path, rr.SeriesLines(colors=rgba(colour), names=name, **style), static=True)
     stream.send_columns(path, indexes=[index], columns=rr.Scalars.columns(scalars=y))
 
@@ -289,8 +263,6 @@ def rgba(colour: str) -> int:
 
 def events(stream: rr.RecordingStream, comparison: Comparison, timeline: str) -> None:
     """When something was different: a line of text where each event begins and ends."""
-    import rerun as rr
-
     for begin, end in comparison.events:
         for second, word in ((begin, "begins"), (end, "ends")):
             stream.set_time(timeline, duration=float(second))

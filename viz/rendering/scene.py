@@ -10,11 +10,10 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from geom.arrays import Array
-from viz.colours import LIGHT, Theme
+from viz.colours import LIGHT, Theme, decimals, marks
 from viz.labels import minus
 from viz.rendering.cut import Surface
 from viz.rendering.gl import require_gl
-from viz.rendering.scale import decimals, marks
 
 if TYPE_CHECKING:
     import pyvista

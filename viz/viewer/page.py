@@ -15,14 +15,11 @@ import numpy as np
 
 from geom.arrays import Array, Ints
 from geom.meshing.mesh import NamedMesh
-from viz.colours import VERDICT, heat, missing, part_colours, power, rgb
+from viz.colours import VERDICT, heat, marks, missing, part_colours, power, rgb, rounded
 from viz.data import Comparison, late_mean, short
 from viz.rendering.flux import nodal_flux
 from viz.rendering.nodes import SplitMesh
-from viz.rendering.scale import marks, rounded
-from viz.viewer.network import NetworkRun, network_document
-from viz.viewer.packing import packed_integers, packed_numbers
-from viz.viewer.part_shapes import ERROR_K, packed_fields
+from viz.viewer.part_shapes import ERROR_K, NetworkRun, network_document, packed_fields, packed_integers, packed_numbers
 
 ERROR = 0.02  # of a residual: far below what a sensor can tell
 STEP = 0.008  # of a residual, of the shapes at their largest amplitude

@@ -1,18 +1,52 @@
-"""Fields over the machine as the page holds them: every part has few shapes of its own, every field their weights.
+"""Fields and network as the page holds them: every part has few shapes of its own, every field their weights.
 
-Parts need fewer shapes than the machine, for each part's field is smooth: fewer bytes, and less to mix per instant.
+Parts need fewer shapes than the machine, for each field is smooth there: fewer bytes, and less to mix per instant.
+Arrays are short text: whole numbers, differences of neighbours without a sign, deflate, base64. Nodes of the network
+are drawn in the half section, heat along the lines between.
 """
 
 from __future__ import annotations
 
+import base64
+import zlib
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
-from geom.arrays import Array
+from geom.arrays import Array, Ints
+from geom.meshing.mesh import NamedMesh
+from viz.machine.network import CLOSEST, SMALL, places, spread_out
 from viz.rendering.nodes import SplitMesh
-from viz.viewer.packing import packed_numbers
+
+UNKNOWN = -1  # whole numbers of a column begin at zero: this one stands for what is not finite
+LEVEL = 8  # of deflate: 9 makes a page half a percent shorter and takes two and a half times as long
+
+
+def packed_integers(values: Ints) -> dict[str, Any]:
+    """Rows of whole numbers (n, k), each as the difference from the row before it: meshes are regular.
+
+    A difference n is 2 n, and -n is 2 n - 1: the upper bytes of small ones are then zero, whatever their sign.
+    """
+    steps = np.diff(values, axis=0, prepend=np.zeros((1, values.shape[1]), np.int64))
+    unsigned = np.where(steps < 0, -2 * steps - 1, 2 * steps).astype("<u4")
+    planes = np.ascontiguousarray(unsigned.T).view(np.uint8).reshape(-1, 4).T  # equal bytes side by side deflate well
+    data = zlib.compress(np.ascontiguousarray(planes).tobytes(), LEVEL)
+    return {"columns": values.shape[1], "data": base64.b64encode(data).decode("ascii")}
+
+
+def packed_numbers(values: Array, step: Array | float | None = None) -> dict[str, Any]:
+    """Rows of numbers (n, k), each column in its own step (k,), or in 65,535 steps over its range; NaN stays NaN."""
+    finite = np.isfinite(values)
+    low = np.where(finite, values, np.inf).min(axis=0, initial=np.inf)
+    low = np.where(np.isfinite(low), low, 0.0)
+    above = np.where(finite, values - low, 0.0)
+    fine = np.maximum(above.max(axis=0, initial=0.0), 1e-12) / 65535
+    steps = np.broadcast_to(fine if step is None else step, low.shape)
+    whole = np.where(finite, np.round(above / steps), UNKNOWN).astype(np.int64)
+    return {**packed_integers(whole), "low": low.tolist(), "step": steps.tolist()}
+
 
 BLOCK = 1024  # nodes looked at together: with a thousand fields of each they stay in a processor's cache
 ERROR_K = 0.1  # largest error of any node at any instant: a fifth of what a thermocouple tells
@@ -82,3 +116,54 @@ def packed_fields(fields: Array, nodes: SplitMesh, error: float, step: float) ->
         blocks.append(packed_numbers(columns, np.array([step, *reduced.steps(step)])))
         weights += [np.ones((len(fields), 1)), reduced.amplitudes]
     return {"blocks": blocks, "weights": packed_numbers(np.hstack(weights), step)}
+
+
+STEP_K, STEP_W = 0.1, 0.1  # a tenth of what is printed; the page's words have whole degrees and watts
+OFF_AXIS = 0.25  # of the largest radius: feet and base are drawn so far below the axis, one below the other
+
+
+@dataclass(frozen=True)
+class NetworkRun:
+    """A test with the model as it stands, at n instants.
+
+    T : node -> (n,) degC;  watts : (start, end) -> (n,) W;  conductance : (start, end) -> W/K
+    """
+
+    T: Mapping[str, Array]
+    watts: Mapping[tuple[str, str], Array]
+    conductance: Mapping[tuple[str, str], float]
+
+
+def _side_by_side(columns: Sequence[Array], rows: int) -> Array:
+    """(rows, k), also where there are no columns."""
+    return np.reshape(columns, (len(columns), rows)).T
+
+
+def network_document(mesh: NamedMesh, nodes: SplitMesh, runs: Sequence[NetworkRun]) -> dict[str, Any]:
+    """Nodes with their place along the axis and off it (m); flows of 1 % of the largest and more, with their widths."""
+    at = {name: xyz for name, xyz in places(mesh, nodes).items() if all(name in r.T for r in runs)}
+    if not at:
+        return {}
+    at = spread_out(at, CLOSEST * nodes.length)
+    below = sorted((name for name, xyz in at.items() if xyz[1] < 0), key=lambda name: -at[name][1])
+    reach = max((float(xyz[1]) for xyz in at.values()), default=1.0)
+    at |= {name: np.array([0.0, -OFF_AXIS * reach * k, at[name][2]]) for k, name in enumerate(below, 1)}
+    names = list(at)
+    pairs = sorted({pair for r in runs for pair in r.watts if pair[0] in at and pair[1] in at})
+    largest = {pair: max(float(np.abs(r.watts[pair]).max()) for r in runs if pair in r.watts) for pair in pairs}
+    most = max(largest.values(), default=1.0)
+    active = [pair for pair in pairs if largest[pair] >= SMALL * most]
+    widest = max((runs[0].conductance.get(pair, 0.0) for pair in active), default=1.0) or 1.0
+    return {
+        "nodes": [{"name": name, "z": round(float(z), 4), "y": round(float(y), 4)} for name, (_, y, z) in at.items()],
+        "links": [[names.index(a), names.index(b), round(runs[0].conductance.get((a, b), 0.0), 2)] for a, b in active],
+        "widest": widest,
+        "most": most,
+        "tests": [
+            {
+                "T": packed_numbers(np.transpose([r.T[name] for name in names]), STEP_K),
+                "W": packed_numbers(_side_by_side([r.watts[pair] for pair in active], len(r.T[names[0]])), STEP_W),
+            }
+            for r in runs
+        ],
+    }

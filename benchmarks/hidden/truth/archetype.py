@@ -6,16 +6,14 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
-from numpy.typing import NDArray
 
-from hidden.truth.body import Body, Joint, Skeleton, skeleton
+from hidden.truth.body import Array, Body, Joint, Skeleton, skeleton
 from hidden.truth.change import Change
 from hidden.truth.draw import Draw
 from hidden.truth.machine import Machine, Term
 from hidden.truth.profile import air, between, fine_times, log_times
 from hidden.truth.readings import Logger, Sensor, read, recorded, with_gaps
 
-Array = NDArray[np.float64]
 Edit = tuple[tuple[str, ...], float]
 
 

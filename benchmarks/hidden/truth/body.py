@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
+Cells = NDArray[np.int64]
 REFERENCE = 40.0
 
 
@@ -47,13 +48,13 @@ class Skeleton:
     where: Mapping[str, slice]
     C: Array
     c_slope: Array
-    i: NDArray[np.int64]
-    j: NDArray[np.int64]
+    i: Cells
+    j: Cells
     G: Array
     slope: Array
     spread: Array
 
-    def cells(self, name: str) -> NDArray[np.int64]:
+    def cells(self, name: str) -> Cells:
         return np.arange(self.C.size)[self.where[name]]
 
     def cell(self, name: str, position: float) -> int:

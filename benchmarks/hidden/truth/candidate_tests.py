@@ -6,11 +6,10 @@ from collections.abc import Callable, Mapping
 from dataclasses import replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 from hidden.truth.archetype import Plan
+from hidden.truth.body import Array
 
-Array = NDArray[np.float64]
 Inputs = dict[str, Array]
 Step = Callable[[Array, Inputs], Inputs]
 

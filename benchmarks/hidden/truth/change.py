@@ -6,12 +6,10 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
-from hidden.truth.body import Body, Joint, Skeleton
+from hidden.truth.body import Array, Body, Joint, Skeleton
 from hidden.truth.machine import Inputs, Term
 
-Array = NDArray[np.float64]
 Terms = Callable[[Skeleton], tuple[Term, ...]]
 Reading = Callable[[Array, Array, Array], Array]
 Recorded = Callable[[Array, Array], Array]

@@ -6,14 +6,12 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 
 import numpy as np
-from numpy.typing import NDArray
 
-from hidden.truth.body import Joint, Skeleton
+from hidden.truth.body import Array, Joint, Skeleton
 from hidden.truth.change import Change
 from hidden.truth.films import wind
 from hidden.truth.machine import Film, Loss
 
-Array = NDArray[np.float64]
 METER = 0.04  # twice what shunts and meters of a bench may be off by: less is no wrong range
 
 

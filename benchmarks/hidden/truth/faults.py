@@ -5,12 +5,10 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable
 
 import numpy as np
-from numpy.typing import NDArray
 
+from hidden.truth.body import Array
 from hidden.truth.change import Change
 from hidden.truth.readings import lagged
-
-Array = NDArray[np.float64]
 
 
 def reading(sensor: str, happens: Callable[[Array, Array, Array], Array]) -> Change:

@@ -1,14 +1,15 @@
-"""Heat transfer coefficients (W/m2/K) of air and water films. T in degC, lengths in m, speeds in m/s or rpm."""
+"""Heat transfer coefficients (W/m2/K) of films, and losses (W). T in degC, lengths in m, speeds in m/s or rpm, A."""
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import numpy as np
-from numpy.typing import NDArray
 
-from hidden.truth.body import Skeleton
-from hidden.truth.machine import Film, Inputs
+from hidden.truth.body import Array, Skeleton
+from hidden.truth.draw import Draw
+from hidden.truth.machine import Film, FilmLaw, Inputs, LossLaw
 
-Array = NDArray[np.float64]
 G0, SIGMA, ZERO = 9.81, 5.670374e-8, 273.15
 
 
@@ -56,6 +57,11 @@ def radiation(T: Array, Ta: Array, emissivity: float) -> Array:
     return emissivity * SIGMA * (a**2 + b**2) * (a + b)
 
 
+def free_film(still: Callable[[Array, Array, float], Array], size: float, share: float, emissivity: float) -> FilmLaw:
+    """Still air on a face of a size (m), a share of what a correlation says, and radiation."""
+    return lambda T, Ta, u: share * still(T, Ta, size) + radiation(T, Ta, emissivity)
+
+
 def gap(T: Array, rpm: float, r: float, g: float) -> Array:
     """Rotor to stator, one film over the whole gap: Nu of Taylor-Couette flow, smoothly joined to conduction."""
     k, nu, _, Pr = air(T)
@@ -95,3 +101,38 @@ def channel(T: Array, litres_min: float, area: float, D: float) -> Array:
     turbulent = f / 8 * np.maximum(Re - 1000.0, 0.0) * Pr / (1.0 + 12.7 * np.sqrt(f / 8) * (Pr ** (2 / 3) - 1.0))
     share = 1.0 / (1.0 + np.exp(-(Re - 3000.0) / 300.0))
     return np.asarray((share * turbulent + (1.0 - share) * 4.36 * (1.0 + 0.0003 * Re)) * k / D)
+
+
+ALPHA = 0.00393
+
+
+def copper(R20: float, current: float, T: Array) -> Array:
+    """Per-cell loss of a winding of 3 R20 in all."""
+    return 3.0 * R20 * current**2 * (1.0 + ALPHA * (T - 20.0))
+
+
+def joule(R20: float, input_A: str = "current_A") -> LossLaw:
+    """Loss of a winding under one of the inputs."""
+    return lambda T, u: copper(R20, u[input_A], T)
+
+
+def bertotti(T: Array, f: float, hysteresis: float, eddy: float, excess: float) -> Array:
+    """Bertotti 1988 at constant flux: hysteresis f + eddy f^2 + excess f^1.5, f relative to the rated; eddies fade as
+    the steel warms (0.1 %/K)."""
+    return hysteresis * f + eddy * f**2 / (1.0 + 0.001 * (T - 40.0)) + excess * f**1.5
+
+
+def steel(d: Draw, rated_rpm: float, hysteresis: float, eddy: float, excess: float) -> LossLaw:
+    """A core at the speed over the rated one; its three parts (W) are drawn."""
+    kh, ke, kx = hysteresis * d.factor("iron", 0.15), eddy * d.factor("eddy", 0.2), excess * d.factor("excess", 0.3)
+    return lambda T, u: bertotti(T, abs(u["speed_rpm"]) / rated_rpm, kh, ke, kx)
+
+
+def magnet_eddy(P: float, rated_rpm: float) -> LossLaw:
+    """Eddies in magnets: P f^1.9 at 40 degC, less as they warm."""
+    return lambda T, u: P * (abs(u["speed_rpm"]) / rated_rpm) ** 1.9 / (1.0 + 0.0005 * (T - 40.0))
+
+
+def bearing(P: float, rated_rpm: float, thinning: float = 0.006) -> LossLaw:
+    """Grease-lubricated: P f^1.1 at 40 degC, f relative to the rated speed; less as the grease thins (per K)."""
+    return lambda T, u: P * (abs(u["speed_rpm"]) / rated_rpm) ** 1.1 * np.exp(-thinning * (T - 40.0))

@@ -6,13 +6,10 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
-from hidden.truth.body import Body, Joint, Skeleton
+from hidden.truth.body import Array, Body, Cells, Joint, Skeleton
 from hidden.truth.change import Change, Terms
 from hidden.truth.machine import Film, Loss
-
-Array = NDArray[np.float64]
 
 
 def cable(body: str, G: float, C: float) -> Change:
@@ -46,9 +43,9 @@ class Rub:
     """Heat (W) in cells at 1500 rpm and 10 K beyond 8 K of difference between the means of two other bodies."""
 
     name: str
-    cells: NDArray[np.int64]
-    hot: NDArray[np.int64]
-    cold: NDArray[np.int64]
+    cells: Cells
+    hot: Cells
+    cold: Cells
     watts: float
 
     def into(self, q: Array, T: Array, u: Mapping[str, float]) -> None:

@@ -7,12 +7,12 @@ from dataclasses import dataclass
 from typing import Protocol
 
 import numpy as np
-from numpy.typing import NDArray
 
-from hidden.truth.body import Skeleton
+from hidden.truth.body import Array, Cells, Skeleton
 
-Array = NDArray[np.float64]
 Inputs = Mapping[str, float]
+FilmLaw = Callable[[Array, Array, Inputs], Array | float]
+LossLaw = Callable[[Array, Inputs], Array | float]
 TOLERANCE = 1e-4
 
 
@@ -31,10 +31,10 @@ class Film:
     """
 
     name: str
-    cells: NDArray[np.int64]
-    fluid: str | NDArray[np.int64]
+    cells: Cells
+    fluid: str | Cells
     area: Array
-    h: Callable[[Array, Array, Inputs], Array | float]
+    h: FilmLaw
 
     def into(self, q: Array, T: Array, u: Inputs) -> None:
         hot = T[self.cells]
@@ -52,7 +52,7 @@ class Stream:
     mcp : heat capacity flow (W/K) from (T cells, inputs)
     """
 
-    cells: NDArray[np.int64]
+    cells: Cells
     inlet: str
     mcp: Callable[[Array, Inputs], float]
 
@@ -66,9 +66,9 @@ class Loss:
     """Heat made in cells: watts(T cells, inputs), shared by `share` (k,)."""
 
     name: str
-    cells: NDArray[np.int64]
+    cells: Cells
     share: Array
-    watts: Callable[[Array, Inputs], Array | float]
+    watts: LossLaw
 
     def into(self, q: Array, T: Array, u: Inputs) -> None:
         q[self.cells] += self.share * self.watts(T[self.cells], u)

@@ -12,15 +12,14 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from hidden.truth.archetype import Archetype, Plan, sensors, truly
+from hidden.truth.body import Array
 from hidden.truth.change import NOTHING, Change
 from hidden.truth.draw import Draw
 from hidden.truth.machine import Machine
 from hidden.truth.profile import fine_times
 
-Array = NDArray[np.float64]
 MODEL_K, CORRELATED_S, DEVIATION = 0.4, 600.0, 10.0
 EVERY_S = 60.0
 WIDER = 1.5  # a user's prior over the scatter of the true parameters

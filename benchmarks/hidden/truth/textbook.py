@@ -8,15 +8,11 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 
-import numpy as np
-from numpy.typing import NDArray
-
 from hidden.truth.archetype import Archetype
-from hidden.truth.body import Skeleton
+from hidden.truth.body import Array, Cells, Skeleton
 from hidden.truth.change import Change
 from hidden.truth.machine import Inputs
 
-Array = NDArray[np.float64]
 Law = Callable[[float, Inputs], float]
 
 
@@ -24,8 +20,8 @@ Law = Callable[[float, Inputs], float]
 class Lumped:
     """law (mean temperature, inputs) -> W, evenly over a body's cells and, with the other sign, over another's."""
 
-    cells: NDArray[np.int64]
-    other: NDArray[np.int64] | None
+    cells: Cells
+    other: Cells | None
     law: Callable[[float, float, Inputs], float]
 
     def into(self, q: Array, T: Array, u: Inputs) -> None:

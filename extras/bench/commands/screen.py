@@ -64,7 +64,7 @@ def carry(
     json: th.JsonOption = None,
 ) -> int:
     """The calibrated model of one case on other machines. Exit code 1 if one disagrees beyond its uncertainty."""
-    from extras.bench.reduction.transfer import transferred
+    from extras.bench.reduction.two_paths import transferred
 
     with th.progress() as tell:
         calibrated = th.open_case(source, tell)
@@ -91,8 +91,8 @@ def _by_effects(machine: th.MachineDescription, design: str) -> dict[str, Any]:
 
 
 def _by_shares(machine: th.MachineDescription, design: str) -> dict[str, Any]:
+    from extras.bench.factors.factorial import morris, sobol
     from extras.bench.factors.screening import varied
-    from extras.bench.factors.sensitivity import morris, sobol
 
     factors, responses = varied(machine)
     method = partial(morris, trajectories=TRAJECTORIES) if design == "morris" else partial(sobol, base=SAMPLES)

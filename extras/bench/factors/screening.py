@@ -8,8 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from extras.bench.factors.factorial import Design, Effects, Factor, effects
-from extras.bench.factors.sensitivity import Response, Varied
+from extras.bench.factors.factorial import Design, Effects, Factor, Response, Varied, effects
 from extras.bench.reduction.pm_network import PmSettings, Rows, pm_network, table_of
 from thermoscope import Record, plugin as th, simulate
 
@@ -26,6 +25,7 @@ TABLE_I = (
 WITH_GAP = (*TABLE_I, Factor("H", "liner gap", 0.7, 1.4))  # mm, M2's and M1's: calibrated, not screened, in the paper
 STEP, PATH = "winding minus magnets", "R_w (mK/W)"
 RESPONSES = {"magnets": "magnets", "winding": "winding", "end winding": "winding.left", "lamination": "stator.core"}
+BATH = ("winding impregnation", "end-winding impregnation")  # filled in one and the same bath
 POOR, GOOD = 0.2, 0.8  # impregnation of the end windings, "no" and "yes"
 
 
@@ -123,16 +123,9 @@ def varied(machine: th.MachineDescription, load: Load | None = None) -> tuple[li
             cache[key] = run(machine, levels, test, table)
         return cache[key]
 
-    factors = [
-        Varied("convection", 5.0, 10.0),
-        Varied("emissivity", 0.2, 0.8),
-        Varied("base", 0.0, 1.0),
-        Varied("winding impregnation", 0.2, 0.8, "impregnation"),
-        Varied("end-winding impregnation", 0.2, 0.8, "impregnation"),
-        Varied("speed", 200.0, 400.0),
-        Varied("magnetic loss", 1.0, 1.5),
-        Varied("liner gap", 0.7, 1.4),
-    ]
+    between = {"base": (0.0, 1.0), "end-winding impregnation": (POOR, GOOD)}  # of what has no levels in between
+    limits = {f.name: between.get(f.name, (f.low, f.high)) for f in WITH_GAP}
+    factors = [Varied(n, low, high, "impregnation" * (n in BATH)) for n, (low, high) in limits.items()]
     return factors, {
         "magnets": lambda levels: rises(levels)["magnets"],
         STEP: lambda levels: rises(levels)["winding"] - rises(levels)["magnets"],

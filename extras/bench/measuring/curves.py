@@ -8,8 +8,7 @@ from typing import Any, Literal, TypeVar
 
 import numpy as np
 
-from extras.bench.measuring.repeats import Repeats, repeats
-from extras.bench.measuring.warming import Equilibrium, Warming, equilibrium, fit_eq8, spaced_window
+from extras.bench.measuring.warming import Equilibrium, Repeats, Warming, equilibrium, fit_eq8, repeats, spaced_window
 from thermoscope import InputError, plugin as th
 
 R = TypeVar("R")

@@ -15,7 +15,7 @@ from typing import Any, Literal
 import numpy as np
 
 from extras.bench.measuring.curves import ALIKE, LATE, constant
-from extras.bench.measuring.repeats import LEVEL
+from extras.bench.measuring.warming import LEVEL
 from thermoscope import InputError, plugin as th
 
 Verdict = Literal["changed", "equal", "cannot tell"]

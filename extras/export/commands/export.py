@@ -105,7 +105,7 @@ def _differences(folder: th.Folder, model: Model, tell: th.Progress) -> dict[str
     """
     import numpy as np
 
-    from extras.export.drive import AGREES_K, Compiled, difference, sampled
+    from extras.export.compilers import AGREES_K, Compiled, difference, sampled
     from extras.export.model import reach_of
 
     tell("holding the code against the simulation")

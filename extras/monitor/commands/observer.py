@@ -35,7 +35,6 @@ def export_observer(
         of = observer_model(
             design.process,
             design.noise,
-            design.noise.sd,
             design.rise_K,
             [s.channel for s in filters],
             th.standing_reference(folder.case),

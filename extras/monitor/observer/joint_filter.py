@@ -13,8 +13,8 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from extras.monitor.observer.constants import Constants
+from extras.monitor.observer.kalman import ProcessNoise, thinned
 from extras.monitor.observer.process import Process
-from extras.monitor.observer.process_noise import ProcessNoise, thinned
 from thermoscope import Record, plugin as th
 
 LASTS_S = 600.0  # an error of a whole recording is that of a place or of its rig: it lasts as long as the heat does

@@ -2,19 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 
 from extras.monitor.observer.constants import Constants, Sensor, with_motion
 from extras.monitor.observer.joint_filter import JointFilter
+from extras.monitor.observer.kalman import ProcessNoise
 from extras.monitor.observer.observer import Observer, observer
 from extras.monitor.observer.process import Process
-from extras.monitor.observer.process_noise import ProcessNoise
 from thermoscope import Network, Parameter, plugin as th
 
-Progress = Callable[[str], None]
 HALF = 0.5  # of an effect: correlations that an effect follows are known within a factor
 TIME_S = 1200.0  # that missing heat lasts: between a winding's time constant and a machine's
 
@@ -35,7 +34,7 @@ class Design:
         """With some sensors, from their first readings (s,)."""
         sensor_models = [self.as_learned(c) for c in sensors]
         bias, channels = np.array([s.bias_K for s in sensor_models]), [s.channel for s in sensor_models]
-        return observer(self.process, self.noise, self.noise.sd, channels, readings, boundaries, self.rise_K, bias)
+        return observer(self.process, self.noise, channels, readings, boundaries, self.rise_K, bias)
 
     def as_learned(self, c: th.Channel) -> Sensor:
         """A sensor by its name; as declared where no test had it."""
@@ -78,7 +77,7 @@ def taught(
     table: th.Array,
     tests: Sequence[th.Test],
     doubt: th.Doubt,
-    progress: Progress = lambda message: None,
+    progress: th.CaseProgress = lambda message: None,
 ) -> Lesson:
     """What some tests, those of a calibration, tell of the constants."""
     one = JointFilter(constants_of(network, values, tests, doubt), tuple(bodies), ProcessNoise(table, TIME_S))

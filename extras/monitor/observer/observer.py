@@ -8,11 +8,9 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 from scipy.special import ndtr
 
-from extras.monitor.observer.hypotheses import OVER, SURE, TOLERANCE, Hypotheses, hypotheses
-from extras.monitor.observer.kalman import Filter, begun
+from extras.monitor.observer.hypotheses import OVER, SURE, TOLERANCE, Hypotheses, SensorState, hypotheses
+from extras.monitor.observer.kalman import Filter, ProcessNoise, begun
 from extras.monitor.observer.process import Driven, Process
-from extras.monitor.observer.process_noise import ProcessNoise
-from extras.monitor.observer.sensor_faults import SensorState
 from thermoscope import Record, plugin as th
 
 CORRELATION_S = 60.0  # a reading's error lasts about a minute: more readings within it are no more evidence
@@ -62,13 +60,12 @@ class Sample:
 class Observer:
     """What it is made of and how it stands; `follow` takes it over a record.
 
-    table_sd (m,) W that the table of doubt allows the bodies;  sensors : channels, whose readings do not matter
+    sensors : channels, whose readings do not matter
     bias (s,) K that each sensor reads too much;  lagged (s,) degC that it would show by its own inertia
     open : hypothesis -> what was said of it
     """
 
     filter: Filter
-    table_sd: th.Array
     sensors: tuple[th.Channel, ...]
     bias: th.Array
     states: list[SensorState]
@@ -150,7 +147,7 @@ class Observer:
         count = len(self.sensors)
         sd = np.linalg.norm(self.filter.S[self.filter.process.slow.size :], axis=1)
         for i, chance in enumerate(
-            np.asarray(ndtr((np.abs(self.filter.q) - TOLERANCE * self.table_sd) / np.maximum(sd, 1e-9))), count
+            np.asarray(ndtr((np.abs(self.filter.q) - TOLERANCE * self.filter.noise.sd) / np.maximum(sd, 1e-9))), count
         ):
             size = float(self.filter.q[i - count])
             if i not in self.open:
@@ -184,7 +181,6 @@ class Observer:
 def observer(
     process: Process,
     noise: ProcessNoise,
-    table_sd: th.Array,
     sensors: Sequence[th.Channel],
     readings: th.Array,
     boundaries: Mapping[str, float],
@@ -193,7 +189,7 @@ def observer(
 ) -> Observer:
     """At its start, from the first readings (s,): places without a sensor begin at the mean of the others.
 
-    table_sd (m,) W that the table of doubt allows;  rise_K : usual rise, of which a sensor may miss a share
+    rise_K : usual rise, of which a sensor may miss a share
     bias (s,) K that the sensors read too much, none by default
     """
     off = np.zeros(len(sensors)) if bias is None else bias
@@ -206,6 +202,6 @@ def observer(
     start = begun(process, noise, x, sd, float(np.hypot(th.USUAL_DOUBT["start"], np.std(around))), heats)
     sigma = np.array([c.sigma_K for c in sensors])
     tolerance_K = np.hypot(sigma, th.USUAL_DOUBT["gain"] * rise_K)
-    tests = hypotheses(tuple(c.name for c in sensors), sigma, tolerance_K, process.bodies, table_sd)
+    tests = hypotheses(tuple(c.name for c in sensors), sigma, tolerance_K, process.bodies, noise.sd)
     states = [SensorState() for _ in sensors]
-    return Observer(start, table_sd, tuple(sensors), off, states, tests, np.zeros(count))
+    return Observer(start, tuple(sensors), off, states, tests, np.zeros(count))

@@ -49,10 +49,9 @@ class LiveTable:
         return [name for name in needed if name not in self.header]
 
     def _drives(self, c: th.Column) -> bool:
-        laws = [*(x.law for x in self.network.links), *(x.law for x in self.network.sources)]
-        read = {name for law in laws for name in law.reads}
-        read |= {feeds for name, of in self.sheet.squares.items() if name in read for feeds in self._feeds(of)}
-        return c.place in self.network.boundaries if c.is_temperature else c.feeds in read
+        read = self.network.inputs
+        squared = {feeds for name, of in self.sheet.squares.items() if name in read for feeds in self._feeds(of)}
+        return c.place in self.network.boundaries if c.is_temperature else c.feeds in read | squared
 
     def _feeds(self, columns: Sequence[str]) -> list[str]:
         return [c.feeds for c in self.sheet.columns if c.name in columns]

@@ -9,9 +9,9 @@ from pathlib import Path
 
 import numpy as np
 
+from extras.monitor.observer.kalman import most_doubtful, of_doubt
 from extras.monitor.observer.learning import Design, Lesson, design_of, narrowed, taught, unsettled
 from extras.monitor.observer.process import bodies_of
-from extras.monitor.observer.process_noise import most_doubtful, of_doubt
 from extras.monitor.rows.live_rows import Rows
 from thermoscope import InputError, Network, Record, plugin as th, simulate
 

@@ -11,9 +11,9 @@ import numpy as np
 
 from extras.rating.commands.rate import case_or_machine, is_machine
 from extras.rating.envelope import rated
-from extras.rating.hot_spots import hot_spots
 from extras.rating.operation import coolant_boundaries
-from extras.rating.optimisation.auxiliaries import auxiliary_power
+from extras.rating.optimisation.electrics import auxiliary_power
+from extras.rating.points import hot_spots
 from extras.rating.request import Rated, RatingRequest, rated_model
 from extras.rating.rows import row
 from thermoscope import InputError, ThermoscopeError, plugin as th, steady

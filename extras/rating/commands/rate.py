@@ -13,10 +13,9 @@ from typing import Annotated, Any
 import numpy as np
 import typer
 
-from extras.rating.envelope import DUTIES, LimitError, Rating, rated, until
+from extras.rating.envelope import DUTIES, Lap, LimitError, Rating, rated, share_for_ever, time_to_limit, until
 from extras.rating.operation import Operation
 from extras.rating.points import Model
-from extras.rating.repeated_cycle import Lap, share_for_ever, time_to_limit
 from extras.rating.request import Rated, RatingRequest, rated_model
 from extras.rating.rows import derated, load_of, point, row
 from thermoscope import InputError, plugin as th

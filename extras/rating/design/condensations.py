@@ -5,26 +5,24 @@ Both sides of a ratio are of the same mesh, so what is coarse about it cancels t
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from functools import cached_property
 
 import numpy as np
 
 from extras.rating.design.machine_keys import short_key
-from extras.rating.hot_spots import hot_spots
-from extras.rating.optimisation.corrections import Corrections, errors, learned
 from extras.rating.optimisation.problem import COPPER, SETTLING, Problem
 from extras.rating.optimisation.scaling import Scaling, design_parameters
-from extras.rating.optimisation.space import Variable
+from extras.rating.optimisation.space import Corrections, Variable, errors, learned
+from extras.rating.points import hot_spots
 from thermoscope import InputError, Network, plugin as th
 
-Progress = Callable[[str], None]
 HALVINGS = 6  # of the way to a bound; nearer, a variable says nothing
 SIZE_M, ACROSS = 0.12, 0.5  # elements twice as large as those of a case; temperatures differ by 2 % of the rise
 
 
-def coarse_network(machine: th.MachineDescription, progress: Progress) -> Network:
+def coarse_network(machine: th.MachineDescription, progress: th.CaseProgress) -> Network:
     """Seconds; from the cache where it was made before."""
     ready = th.prepared(machine, SIZE_M, 48, progress, across=ACROSS)
     # fewer snapshots than a case's: enough to rank designs
@@ -35,7 +33,7 @@ def coarse_network(machine: th.MachineDescription, progress: Progress) -> Networ
 class Condensations:
     """Ratios condensed / scaled of one problem, at any of its geometries."""
 
-    def __init__(self, problem: Problem, progress: Progress) -> None:
+    def __init__(self, problem: Problem, progress: th.CaseProgress) -> None:
         self.problem, self.progress = problem, progress
         self.usual = problem.space.usual
 
@@ -52,7 +50,7 @@ class Condensations:
         larger = network.extended(parameters=design_parameters(network))
         rows = {n: p.mean for n, p in larger.places.items()}
         spots = hot_spots(larger, rows, {s.name: s.limit for s in self.problem.spots})
-        inputs = {n: u for n, u in self.problem.inputs.items() if n in _reads(larger)}
+        inputs = {n: u for n, u in self.problem.inputs.items() if n in larger.inputs}
         from_machine = tuple(n for n in self.problem.from_machine if n in inputs)
         return replace(
             self.problem,
@@ -110,8 +108,3 @@ class Condensations:
         """Quantity -> the largest relative error of the interpolation at designs that it was not learned from."""
         space = self.problem.space
         return errors(self.problem.corrections, [space.share(d) for d in designs], [self.ratios(d) for d in designs])
-
-
-def _reads(network: Network) -> set[str]:
-    laws = [*(x.law for x in network.links), *(x.law for x in network.sources)]
-    return {n for law in laws for n in law.reads}

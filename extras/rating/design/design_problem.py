@@ -10,13 +10,12 @@ import numpy as np
 
 from extras.rating.design.condensations import Condensations
 from extras.rating.design.machine_keys import FLOWS, MachineFile
-from extras.rating.hot_spots import hot_spots
 from extras.rating.operation import flows, operation
-from extras.rating.optimisation.driven import GAINS, Driven
-from extras.rating.optimisation.electrics import electrics_of, wanted_inputs
+from extras.rating.optimisation.electrics import GAINS, Driven, electrics_of, wanted_inputs
 from extras.rating.optimisation.problem import COPPER, OBJECTIVES, PEAK, SETTLING, Problem
 from extras.rating.optimisation.scaling import Scaling, design_parameters
 from extras.rating.optimisation.space import Space, Variable
+from extras.rating.points import hot_spots
 from extras.rating.request import places, usual_point
 from thermoscope import InputError, Network, plugin as th
 

@@ -9,7 +9,7 @@ from functools import cached_property
 from pathlib import Path
 from typing import Any
 
-from extras.rating.optimisation.auxiliaries import FAN
+from extras.rating.optimisation.electrics import FAN
 from extras.rating.optimisation.space import Variable
 from thermoscope import InputError, plugin as th
 

@@ -9,14 +9,11 @@ from typing import Protocol
 
 import numpy as np
 
-from extras.rating.hot_spots import HotSpots
-from extras.rating.optimisation.auxiliaries import auxiliary_power
-from extras.rating.optimisation.corrections import NONE, Corrections
-from extras.rating.optimisation.driven import Driven
-from extras.rating.optimisation.electrics import Electrics
+from extras.rating.optimisation.electrics import Driven, Electrics, auxiliary_power
 from extras.rating.optimisation.rest import Rest, losses, rest, without_feedback
 from extras.rating.optimisation.scaling import Scaling
-from extras.rating.optimisation.space import Space
+from extras.rating.optimisation.space import NONE, Corrections, Space
+from extras.rating.points import HotSpots
 from thermoscope import InputError, Network, plugin as th
 
 PEAK, SETTLING, COPPER, AUXILIARY = OBJECTIVES = ("peak_degC", "settling_s", "copper_W", "auxiliary_W")

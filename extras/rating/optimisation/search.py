@@ -16,7 +16,6 @@ import numpy as np
 from extras.rating.optimisation.problem import Performance, Problem
 from thermoscope import InputError, MissingDependency, plugin as th
 
-Progress = Callable[[str], None]
 Method = Callable[[int, int, int], Any]
 CHUNKS = 16  # tasks per generation on a cluster
 
@@ -70,7 +69,7 @@ def pareto_set(
     method: Method = nsga2,
     effort: Effort = Effort(),
     executor: Executor | None = None,
-    progress: Progress = lambda message: None,
+    progress: th.CaseProgress = lambda message: None,
 ) -> list[Design]:
     """Designs that meet every limit and that no other beats in all objectives, by rising peak temperature.
 
@@ -112,8 +111,8 @@ def _posed(problem: Problem, archive: list[Design], executor: Executor | None) -
                 n_var=len(space.variables),
                 n_obj=len(problem.aimed),
                 n_ieq_constr=len(limits),
-                xl=space.low,
-                xu=space.high,
+                xl=np.array([v.low for v in space.variables]),
+                xu=np.array([v.high for v in space.variables]),
             )
 
         def _evaluate(self, X: th.Array, out: dict[str, th.Array], *args: Any, **others: Any) -> None:

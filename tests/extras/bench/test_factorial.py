@@ -3,9 +3,8 @@
 import numpy as np
 import pytest
 
-from extras.bench.factors.factorial import Factor, effects, fractional, full, lenth
+from extras.bench.factors.factorial import Factor, Varied, effects, fractional, full, lenth, morris, sobol
 from extras.bench.factors.screening import RESPONSES, TABLE_I, WITH_GAP, screen, varied
-from extras.bench.factors.sensitivity import Varied, morris, sobol
 from extras.bench.reduction.pm_network import bundle, filled
 from geom import load_machine
 from geom.errors import InputError

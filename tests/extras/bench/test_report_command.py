@@ -11,7 +11,7 @@ import pytest
 from test_heat_run import cooling, warming
 from test_procedure_commands import NETWORK
 
-from viz.pages.pdf import BROWSERS
+from viz.pages.html import BROWSERS
 
 HEAD = """
 [machine]

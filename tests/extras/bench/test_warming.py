@@ -4,8 +4,7 @@ import numpy as np
 import pytest
 
 from extras.bench.measuring.curves import assemblies, assembly, worst
-from extras.bench.measuring.repeats import normalised_error, pooled_curves, repeats
-from extras.bench.measuring.warming import eq8, equilibrium, fit_eq8
+from extras.bench.measuring.warming import eq8, equilibrium, fit_eq8, normalised_error, pooled_curves, repeats
 from geom.errors import InputError
 from measured.case import Channel, Test as CaseTest
 

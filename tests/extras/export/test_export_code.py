@@ -11,7 +11,7 @@ from random_networks import built, machine
 
 from extras.export.c_code import c_files
 from extras.export.commands.export import export
-from extras.export.drive import AGREES_K, Compiled, difference
+from extras.export.compilers import AGREES_K, Compiled, difference
 from extras.export.model import Output, packed
 from lumped.correlations.ducts import duct_film
 from lumped.correlations.streams import streamed

@@ -13,9 +13,8 @@ from test_export_code import curved, states
 
 from extras.export.c_code import RUNTIME
 from extras.export.commands.export import export
-from extras.export.compilers import here
+from extras.export.compilers import AGREES_K, here, sampled, signals_of
 from extras.export.document import document, mat
-from extras.export.drive import AGREES_K, sampled, signals_of
 from extras.export.fmu import fmu
 from extras.export.model import exported, packed
 from lumped.integration.simulate import initial_state, simulate

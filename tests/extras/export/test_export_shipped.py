@@ -10,8 +10,8 @@ from test_export_code import CASES
 from test_export_fmu import Slave
 
 from extras.export.c_code import RUNTIME, c_files
+from extras.export.compilers import AGREES_K, Compiled, difference, sampled, signals_of
 from extras.export.document import document
-from extras.export.drive import AGREES_K, Compiled, difference, sampled, signals_of
 from extras.export.fmu import sources
 from extras.export.model import exported
 from extras.monitor.observer.process import Process

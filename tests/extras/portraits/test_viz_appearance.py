@@ -5,12 +5,11 @@ import pytest
 import shapely
 from PIL import Image
 
-from extras.portraits.body import Body, Finish
 from extras.portraits.cutting import cut_body
 from extras.portraits.dressed import dressed
 from extras.portraits.making import ball, bolt, box, extruded, oval, revolved, rod, rounded, swept
 from extras.portraits.portrait import CAPTION, portrait
-from extras.portraits.shape import joined
+from extras.portraits.shape import Body, Finish, joined
 from geom import load_machine
 from geom.description.roles import Role
 from geom.machine_file import machine_from

@@ -8,14 +8,12 @@ from numpy.testing import assert_allclose
 
 from extras.rating import points
 from extras.rating.commands.rate import holding_times
-from extras.rating.derating import deratings
-from extras.rating.envelope import rated, until
-from extras.rating.hot_spots import hot_spots
+from extras.rating.envelope import Lap, rated, share_for_ever, time_to_limit, until
 from extras.rating.loss_grid import loss_grid, with_losses
 from extras.rating.operation import at_altitude, operation
-from extras.rating.points import Duty, Model, mixed
-from extras.rating.repeated_cycle import Lap, share_for_ever, time_to_limit
+from extras.rating.points import Duty, Model, hot_spots, mixed
 from extras.rating.request import places
+from extras.rating.rows import deratings
 from geom.errors import InputError
 from lumped.condensation.recovery import PartShape, Shapes
 from lumped.integration.signals import Signals

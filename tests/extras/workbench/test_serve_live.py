@@ -4,7 +4,7 @@ import json
 
 import pytest
 
-from extras.workbench import live
+from extras.workbench import display as live
 from thermoscope.plugin import DARK, LIGHT, BenchRun
 
 HOT, SAFE = {"current_A": 8.0, "speed_rpm": 3000.0}, {"current_A": 0.0, "speed_rpm": 0.0}

@@ -2,7 +2,7 @@
 
 import pytest
 
-from extras.workbench.revisions import effective, undone
+from extras.workbench.appearance import effective, undone
 from geom.errors import InputError
 from thermoscope.case_folder.history import History, Revision, load_history, save_history
 

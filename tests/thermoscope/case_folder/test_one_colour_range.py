@@ -16,7 +16,7 @@ from thermoscope.case_folder.folder import load_case
 from thermoscope.case_folder.history import History, Revision
 from thermoscope.case_folder.runs import by_interest, fields, stored_range, temperature_range
 from thermoscope.commands.show import pages, viewer
-from viz.rendering.scale import rounded
+from viz.colours import rounded
 
 pytestmark = pytest.mark.heavy
 TINY = Recipe(tolerance=0.3, random_points=1, local_points=1, local_states=1, max_states=40)

@@ -13,7 +13,7 @@ from measured.doubt import Odds
 from thermoscope.case_folder.folder import load_case
 from thermoscope.case_folder.settings import read_settings
 from thermoscope.commands.explain.diagnose import diagnose as diagnose_command
-from thermoscope.commands.stored_diagnosis import last_diagnosis
+from thermoscope.commands.open_case import last_diagnosis
 from validation import diagnose
 from validation.inference.conditions import check_names
 from validation.scope import Scope

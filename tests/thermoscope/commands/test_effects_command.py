@@ -7,7 +7,7 @@ import pytest
 from measured.recordings.units import MEMORY_UNIT, QUANTITIES, converted
 from scripts.quantities import PAGE, page
 from thermoscope.commands.explain.effects import effects
-from thermoscope.commands.test.quantities import quantities
+from thermoscope.commands.test.doctor import quantities
 from validation.effects.base import Effect
 from validation.effects.registry import kinds
 

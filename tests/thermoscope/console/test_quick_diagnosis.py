@@ -8,7 +8,7 @@ from two_bodies import bench
 
 from thermoscope.case_folder.folder import load_case
 from thermoscope.commands.explain import diagnose as command
-from thermoscope.commands.stored_diagnosis import last_diagnosis
+from thermoscope.commands.open_case import last_diagnosis
 from validation import diagnose
 from validation.diagnosis import PRELIMINARY
 

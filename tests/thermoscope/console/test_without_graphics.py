@@ -51,7 +51,7 @@ def test_the_message_is_one_line_and_the_exit_code_2(thermoscope, monkeypatch, u
 def test_a_report_lacks_its_picture_and_its_print_and_says_so_once(case, tmp_path, monkeypatch, capsys):
     """The page itself is written, and holds the machine that the reader's browser draws."""
     monkeypatch.setattr("shutil.which", lambda *names, **more: None)
-    monkeypatch.setattr("viz.pages.pdf.find_spec", lambda name: None)
+    monkeypatch.setattr("viz.pages.html.find_spec", lambda name: None)
     monkeypatch.setattr(pages, "open_case_for_writing", lambda path, tell: with_motor(case))
     assert pages.report(str(case), tmp_path / "r", None) == 0
     said = capsys.readouterr()

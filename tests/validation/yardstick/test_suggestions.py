@@ -9,7 +9,7 @@ from two_bodies import bench
 
 from geom.errors import NoSolution
 from measured.case import AddedEffect
-from thermoscope.case_folder.stored_yardstick import yardstick_document
+from thermoscope.case_folder.stored_comparison import yardstick_document
 from validation.calibration.calibrate import no_progress
 from validation.comparison.compare import errors
 from validation.effects import effect

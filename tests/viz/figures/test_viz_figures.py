@@ -15,7 +15,7 @@ from geom.errors import InputError
 from viz.colours import BLUE, VERDICT
 from viz.data import Comparison
 from viz.figures import bands as uncertain, candidates as scores, curves, errors, paper
-from viz.figures.intervals import intervals
+from viz.figures.bands import intervals
 from viz.labels import minus, signed, spread_labels
 from viz.live import sensor as live_sensor
 

@@ -9,8 +9,7 @@ from geom.errors import InputError
 from lumped import Balance, bare_network, node_link, node_source
 from lumped.transfer.laws import Fixed
 from viz.figures import paper
-from viz.figures.flows import Flow, Heat, heat_flows, last_running_step
-from viz.figures.sankey import sankey_of_losses
+from viz.figures.flows import Flow, Heat, heat_flows, last_running_step, sankey_of_losses
 from viz.machine.animation import WRITERS, animate
 from viz.machine.network import LABEL, NODE, clear_place, network_in_machine, places, spread_out
 from viz.rendering.nodes import split

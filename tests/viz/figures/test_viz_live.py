@@ -14,7 +14,7 @@ from extras.rating.designs import objective_space, parallel_coordinates
 from geom.errors import InputError, MissingDependency
 from viz.colours import DARK
 from viz.live import against_input, confusion, parity, residuals, save, sensor
-from viz.pages.pdf import BROWSERS
+from viz.pages.html import BROWSERS
 
 AIMED = ("peak_degC", "settling_s", "copper_W", "auxiliary_W")
 DESIGNS = [

@@ -2,7 +2,7 @@
 
 import pytest
 
-from viz.rendering.scale import decimals, marks, rounded
+from viz.colours import decimals, marks, rounded
 
 
 @pytest.mark.parametrize("span", [(14.2, 71.9), (0.5, 60.4), (-3.0, 3.0), (25.0, 25.0), (0.0, 299.0), (-0.04, 0.07)])

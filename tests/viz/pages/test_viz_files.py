@@ -57,7 +57,7 @@ def test_what_opens_on_a_click_is_printed(tmp_path):
 
 
 def test_without_a_converter_there_is_no_pdf(tmp_path, monkeypatch):
-    monkeypatch.setattr("viz.pages.pdf.find_spec", lambda name: None)
+    monkeypatch.setattr("viz.pages.html.find_spec", lambda name: None)
     monkeypatch.setattr(shutil, "which", lambda name, **_: None)
     assert write_pdf(write_report(Report("road-test"), tmp_path / "report.html")) is None
     assert not (tmp_path / "report.pdf").exists()

@@ -11,9 +11,8 @@ import pytest
 from viewer_pages import NODES, PLACE, document, mapped, mixed, recorded, unpacked, warming, write_viewer
 
 from viz.rendering.flux import nodal_flux
-from viz.viewer.packing import packed_integers, packed_numbers
 from viz.viewer.page import ERROR, SHARE, STEP_K, packed_maps, render
-from viz.viewer.part_shapes import BLOCK, ERROR_K, low_rank, packed_fields
+from viz.viewer.part_shapes import BLOCK, ERROR_K, low_rank, packed_fields, packed_integers, packed_numbers
 
 
 def test_mixed_shapes_are_the_fields():

@@ -15,9 +15,8 @@ from lumped.model.network import Row
 from measured.case import Channel, Test
 from viz import split
 from viz.data import Comparison
-from viz.viewer.network import NetworkRun
-from viz.viewer.packing import UNKNOWN
 from viz.viewer.page import ErrorMap, Recorded, analysis_document, machine_document, render, temperature_document
+from viz.viewer.part_shapes import UNKNOWN, NetworkRun
 
 NODES = split(motor(24))
 TIMES = np.linspace(0.0, 3600.0, 13)

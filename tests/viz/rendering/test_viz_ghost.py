@@ -8,8 +8,8 @@ from vtkmodules.vtkCommonCore import mutable
 from viz import QUARTER, Sensor, cutaway, split
 from viz.machine.thermocouples import marked
 from viz.rendering.cut import Surface, cut_away, exposed
+from viz.rendering.ghost import SLACK, obstacle
 from viz.rendering.scene import View
-from viz.rendering.visibility import SLACK, obstacle
 
 NODES = split(motor(24))
 VIEWS = {"default": View(), "from the right": View((1.0, 0.4, 0.6)), "from below": View((-1.0, -0.5, -0.4))}

@@ -10,9 +10,9 @@ from small_motor import LEVELS, RADII, motor
 from geom.errors import InputError
 from viz.machine.parts import assemblies, exploded, regions, shifts
 from viz.rendering.cut import cut_away
+from viz.rendering.ghost import anchors
 from viz.rendering.nodes import split
 from viz.rendering.scene import Room, View
-from viz.rendering.visibility import anchors
 
 NODES = split(motor(24))
 

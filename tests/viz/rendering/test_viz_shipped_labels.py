@@ -12,9 +12,8 @@ from viz import QUARTER, Sensor, split
 from viz.machine.parts import ASIDE
 from viz.machine.thermocouples import LABELS, marked
 from viz.rendering.cut import cut_away
-from viz.rendering.ghost import RADIUS
+from viz.rendering.ghost import RADIUS, SLACK
 from viz.rendering.scene import View
-from viz.rendering.visibility import SLACK
 
 VIEWS = {
     "default": View(),

@@ -15,8 +15,7 @@ from lumped.schemas.reader import suggestion
 from measured.case import Test
 from thermoscope.case_folder.folder import Folder
 from thermoscope.case_folder.history import save_history
-from thermoscope.commands.open_case import open_case_for_writing
-from thermoscope.commands.stored_diagnosis import last_diagnosis
+from thermoscope.commands.open_case import last_diagnosis, open_case_for_writing
 from thermoscope.console.options import Case, Json
 from thermoscope.console.summary import Summary
 from thermoscope.console.terminal import give, progress

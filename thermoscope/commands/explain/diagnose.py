@@ -12,8 +12,7 @@ from typing import TYPE_CHECKING, Any
 from geom.table import cell
 from geom.text import counted
 from thermoscope.commands.model.error_budget import budget, in_short, sampling
-from thermoscope.commands.open_case import open_case
-from thermoscope.commands.stored_diagnosis import checked_diagnosis, save_diagnosis
+from thermoscope.commands.open_case import checked_diagnosis, open_case, save_diagnosis
 from thermoscope.commands.test.compare import contradiction
 from thermoscope.console.options import Case, Json, Only, Quick, Without
 from thermoscope.console.summary import Summary, sentences

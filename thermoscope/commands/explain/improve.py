@@ -17,10 +17,9 @@ from thermoscope.case_folder.columns import checked_columns, write_columns
 from thermoscope.case_folder.folder import Folder
 from thermoscope.case_folder.history import History, save_history
 from thermoscope.case_folder.runs import added_words, finding_words
-from thermoscope.case_folder.stored_yardstick import lacking_words, yardstick_document
+from thermoscope.case_folder.stored_comparison import lacking_words, yardstick_document
 from thermoscope.commands.model.revise import recorded
-from thermoscope.commands.open_case import open_case_for_writing
-from thermoscope.commands.stored_diagnosis import save_diagnosis
+from thermoscope.commands.open_case import open_case_for_writing, save_diagnosis
 from thermoscope.console.options import Case, Json
 from thermoscope.console.summary import Summary
 from thermoscope.console.terminal import give, notes, progress

@@ -17,7 +17,7 @@ from lumped.schemas.reader import suggestion
 from measured.sensors.operators import of_measurement
 from thermoscope.case_folder.folder import Folder
 from thermoscope.commands.model.revise import revised
-from thermoscope.commands.stored_diagnosis import fingerprint, store, stored
+from thermoscope.commands.open_case import fingerprint, store, stored
 from thermoscope.console.options import Anyway, Case, Json
 from thermoscope.console.summary import Summary
 from thermoscope.console.terminal import Progress, give, notes

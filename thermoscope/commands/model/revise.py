@@ -18,8 +18,7 @@ from thermoscope.case_folder.columns import checked_columns, write_columns
 from thermoscope.case_folder.folder import Folder
 from thermoscope.case_folder.history import Revision, save_history
 from thermoscope.case_folder.runs import at_revision, by_interest, effects_first, ends, finding_words, mean_rows
-from thermoscope.commands.open_case import open_case_for_writing
-from thermoscope.commands.stored_diagnosis import current_diagnosis
+from thermoscope.commands.open_case import current_diagnosis, open_case_for_writing
 from thermoscope.console.options import Anyway, Case, Effect, Effects, Json
 from thermoscope.console.summary import Summary
 from thermoscope.console.terminal import give, notes, progress

@@ -20,10 +20,9 @@ from measured.sensors.sampling import sampled
 from thermoscope.case_folder import runs
 from thermoscope.case_folder.folder import Folder
 from thermoscope.case_folder.history import Revision
-from thermoscope.commands.open_case import open_case_for_writing
+from thermoscope.commands.open_case import current_diagnosis, last_diagnosis, open_case_for_writing
 from thermoscope.commands.show.picture import Subject, draw_field
 from thermoscope.commands.show.viewer import viewer_page
-from thermoscope.commands.stored_diagnosis import current_diagnosis, last_diagnosis
 from thermoscope.console.options import Case as CaseName, Json, Out
 from thermoscope.console.summary import Summary
 from thermoscope.console.terminal import Progress, give, notes, progress, versions
@@ -58,7 +57,7 @@ def write_page(
     folder: Folder, case: str, into: Path, tell: Progress, pictures: Mapping[str, Path] | None = None
 ) -> Path:
     """Write into/report.html with its pictures, drawn anew or those given; `case` is what commands call the case."""
-    from thermoscope.case_folder.stored_yardstick import yardstick_document
+    from thermoscope.case_folder.stored_comparison import yardstick_document
     from validation.comparison.error_budget import documents
     from viz.pages.report import Report, write_report
 

@@ -24,8 +24,7 @@ from thermoscope.case_folder import runs
 from thermoscope.case_folder.error_field import error_gain, last_fifth
 from thermoscope.case_folder.folder import Folder, Progress
 from thermoscope.case_folder.runs import readings
-from thermoscope.commands.open_case import open_case
-from thermoscope.commands.stored_diagnosis import last_diagnosis
+from thermoscope.commands.open_case import last_diagnosis, open_case
 from thermoscope.console.options import Case as CaseName, Json
 from thermoscope.console.summary import Summary
 from thermoscope.console.terminal import give, progress

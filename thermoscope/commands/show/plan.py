@@ -11,9 +11,8 @@ import typer
 from geom.description.names import file_stem
 from geom.errors import InputError
 from thermoscope.case_folder.folder import Folder
-from thermoscope.commands.open_case import open_case
+from thermoscope.commands.open_case import current_diagnosis, open_case
 from thermoscope.commands.show.pages import provenance
-from thermoscope.commands.stored_diagnosis import current_diagnosis
 from thermoscope.console.options import Case, Json
 from thermoscope.console.summary import Summary
 from thermoscope.console.terminal import give, progress

@@ -20,10 +20,9 @@ from lumped.machine.bases import unused
 from measured.case import Test
 from thermoscope.case_folder import runs
 from thermoscope.case_folder.content import digest, result_key
-from thermoscope.case_folder.error_field import error_gain
+from thermoscope.case_folder.error_field import error_gain, network_run
 from thermoscope.case_folder.folder import Folder
 from thermoscope.case_folder.history import Revision
-from thermoscope.case_folder.network_run import network_run
 from thermoscope.commands.open_case import needs_geometry, open_case
 from thermoscope.console.options import Case, Json
 from thermoscope.console.summary import Summary

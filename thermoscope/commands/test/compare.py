@@ -76,7 +76,7 @@ def compared(
 ) -> tuple[Comparison, dict[str, Any]]:
     """An open case's model against its tests, and the document of it."""
     from thermoscope.bands import bands_requested, test_bands
-    from thermoscope.case_folder.stored_yardstick import yardstick_document
+    from thermoscope.case_folder.stored_comparison import yardstick_document
     from validation.comparison.error_budget import documents
     from validation.parameters.unknowns import strain_words
 
@@ -118,7 +118,7 @@ def comparison_summary(document: Mapping[str, Any], called: str, doubts: str = "
 
     called : what the user calls the case;  doubts : of its recordings, before all else
     """
-    from thermoscope.case_folder.stored_yardstick import lacking_words
+    from thermoscope.case_folder.stored_comparison import lacking_words
 
     tests, budgets, steps = document["tests"], document["error_budget"], document["sampling"]
     plain = document.get("yardstick", {"warning": "", "sentence": ""})

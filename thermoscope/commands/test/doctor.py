@@ -1,4 +1,4 @@
-"""thermoscope test doctor CASE"""
+"""thermoscope test doctor CASE, thermoscope test quantities"""
 
 from __future__ import annotations
 
@@ -6,8 +6,10 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from geom.errors import InputError
+from geom.table import Table
 from geom.text import counted
 from measured.recordings.readings import read_test
+from measured.recordings.units import MEMORY_UNIT, QUANTITIES
 from thermoscope.case_folder.doctor import examined
 from thermoscope.case_folder.folder import find_case, network_of, patient_of
 from thermoscope.case_folder.history import load_history
@@ -63,3 +65,15 @@ def doctor_summary(wrong: Sequence[Finding], doubts: Sequence[Finding], case: st
         for f in rows
     ]
     return Summary(sentence, lines, f"--json FILE; next: thermoscope test compare {case}")
+
+
+def quantities(target: Json = None) -> int:
+    """What a column may measure, in which units, and what memory holds."""
+    rows = [
+        {"quantity": name, "units": list(q.units), "held_as": MEMORY_UNIT[name], "input": q.feeds}
+        for name, q in QUANTITIES.items()
+    ]
+    table = Table.of("", rows, "quantity | units | held as=held_as | input it drives=input")
+    sentence = f"A column measures one of {len(rows)} quantities; other units of the same dimension are read as well."
+    give({"quantities": rows}, target, lambda: Summary(sentence, [table], "docs/reference/quantities.md"))
+    return 0

@@ -10,8 +10,7 @@ from hidden.truth.body import Body, Joint, Skeleton
 from hidden.truth.change import Change
 from hidden.truth.draw import Draw
 from hidden.truth.effects import METER, airflow, bridge, covered, draught, fading, heating, less, stirred_gap
-from hidden.truth.films import across_gap, cylinder_still, plate_still, radiation
-from hidden.truth.losses import ALPHA, bearing, bertotti
+from hidden.truth.films import ALPHA, across_gap, bearing, cylinder_still, free_film, plate_still, radiation, steel
 from hidden.truth.machine import Array, Film, Inputs, Loss, Stream
 from hidden.truth.profile import Rng, levels, steady, until
 
@@ -100,9 +99,7 @@ def outside(s: Skeleton, d: Draw) -> list[Film]:
         clean = 1.0 - u.get("fade.yoke", 0.0)
         return clean * (still * cylinder_still(T, Ta, 0.32) + radiation(T, Ta, emissivity))
 
-    def shield(T: Array, Ta: Array, u: Inputs) -> Array:
-        return still * plate_still(T, Ta, 0.3) + radiation(T, Ta, emissivity)
-
+    shield = free_film(plate_still, 0.3, still, emissivity)
     ring = 0.07 * np.arange(6, 0, -1) / 21.0 * d.factor("face", 0.1)
     ends = [Film(f"shield.{end}", s.cells(f"flange.{end}"), "T_ambient", ring, shield) for end, _ in ENDS]
     return [Film("frame", s.cells("yoke"), "T_ambient", np.full(11, 0.45 / 11), frame), *ends]
@@ -110,7 +107,7 @@ def outside(s: Skeleton, d: Draw) -> list[Film]:
 
 def losses(s: Skeleton, d: Draw) -> list[Loss]:
     Ra, Rf = 0.03 * d.factor("copper.armature", 0.04), 0.02 * d.factor("copper.field", 0.04)
-    kh, ke, kx = 70.0 * d.factor("iron", 0.15), 40.0 * d.factor("eddy", 0.2), 15.0 * d.factor("excess", 0.3)
+    core = steel(d, RATED, 70.0, 40.0, 15.0)
     drop, rub = 2.0 * d.factor("drop", 0.1), 60.0 * d.factor("rub", 0.2)
 
     def brushes(T: Array, u: Inputs) -> Array:
@@ -122,7 +119,7 @@ def losses(s: Skeleton, d: Draw) -> list[Loss]:
         return lambda T, u: R * u["current_A"] ** 2 * (1.0 + ALPHA * (T - 20.0))
 
     def iron(share: float):
-        return lambda T, u: share * bertotti(T, u["speed_rpm"] / RATED, kh, ke, kx)
+        return lambda T, u: share * core(T, u)
 
     even = np.full(11, 1 / 11)
     out = [
@@ -134,7 +131,6 @@ def losses(s: Skeleton, d: Draw) -> list[Loss]:
     ]
     for end, _ in ENDS:
         P = 15.0 * d.factor(f"bearing.{end}", 0.25)
-
         out.append(Loss(f"grease.{end}", s.cells(f"bearing.{end}"), np.full(2, 0.5), bearing(P, RATED)))
     return out
 

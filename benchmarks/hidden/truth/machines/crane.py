@@ -14,8 +14,7 @@ from hidden.truth.body import Body, Joint, Skeleton
 from hidden.truth.change import Change
 from hidden.truth.draw import Draw
 from hidden.truth.effects import METER, covered, draught, heating, joined, less, spinning, switched, warming
-from hidden.truth.films import across_gap, plate_still, radiation
-from hidden.truth.losses import ALPHA, bearing, bertotti, joule
+from hidden.truth.films import ALPHA, across_gap, bearing, bertotti, free_film, joule, plate_still, radiation
 from hidden.truth.machine import Array, Film, Inputs, Loss
 from hidden.truth.profile import Rng, levels, steady, until
 from hidden.truth.readings import Logger
@@ -77,8 +76,7 @@ def films(s: Skeleton, d: Draw) -> list[Film]:
     fade = 0.6 + 0.4 * (np.arange(10) + 0.5) / 10
     fade = fade / fade.mean()
 
-    def face(T: Array, Ta: Array, u: Inputs) -> Array:
-        return still * plate_still(T, Ta, 0.35) + radiation(T, Ta, 0.9)
+    face = free_film(plate_still, 0.35, still, 0.9)
 
     def ribs(T: Array, Ta: Array, u: Inputs) -> Array:
         calm = 0.6 * still * plate_still(T, Ta, 0.3) + 0.35 * radiation(T, Ta, 0.9)

@@ -13,8 +13,7 @@ from hidden.truth.body import Body, Joint, Skeleton
 from hidden.truth.change import Change
 from hidden.truth.draw import Draw
 from hidden.truth.effects import METER, airflow, blown, bridge, covered, draught, heating, less, spinning, warming
-from hidden.truth.films import air, plate_still, radiation
-from hidden.truth.losses import ALPHA, joule
+from hidden.truth.films import ALPHA, air, bearing, free_film, joule, plate_still
 from hidden.truth.machine import Array, Film, Inputs, Loss, Stream
 from hidden.truth.profile import Rng, levels, steady, until
 from hidden.truth.readings import Logger
@@ -77,9 +76,7 @@ def films(s: Skeleton, d: Draw) -> list[Film]:
     def washed(T: Array, Ta: Array, u: Inputs) -> Array:
         return 6.0 + 26.0 * level * u["blower_on"] + 0.4 * disc(T, Ta, u)
 
-    def outer(T: Array, Ta: Array, u: Inputs) -> Array:
-        return still * plate_still(T, Ta, 0.3) + radiation(T, Ta, 0.8)
-
+    outer = free_film(plate_still, 0.3, still, 0.8)
     for side in SIDES:
         air_cells = s.cells(f"air.{side}")
         for body, A, h in (
@@ -103,26 +100,18 @@ def losses(s: Skeleton, d: Draw) -> list[Loss]:
         f = abs(u["speed_rpm"]) / 3000.0
         return iron * (0.4 * f**1.05 + 0.6 * f**1.8)
 
+    def magnets(T: Array, u: Inputs) -> float:
+        return eddy * (abs(u["speed_rpm"]) / 3000.0) ** 1.8
+
     out = [
         Loss("coils", s.cells("coils"), np.full(6, 1 / 6), joule(R)),
         Loss("core", s.cells("teeth"), np.full(6, 1 / 6), core),
     ]
     for side in SIDES:
         P = 14.0 * d.factor(f"grease-{side}", 0.25)
-
-        def grease(T: Array, u: Inputs, P: float = P) -> Array:
-            return P * (abs(u["speed_rpm"]) / 3000.0) ** 1.1 * np.exp(-0.006 * (T - 40.0))
-
         end = s.cells("shaft")[[0]] if side == "left" else s.cells("shaft")[[-1]]
-        out.append(Loss(f"grease {side}", end, np.ones(1), grease))
-        out.append(
-            Loss(
-                f"eddy {side}",
-                s.cells(f"magnets.{side}"),
-                np.full(5, 0.2),
-                lambda T, u: eddy * (abs(u["speed_rpm"]) / 3000.0) ** 1.8,
-            )
-        )
+        out.append(Loss(f"grease {side}", end, np.ones(1), bearing(P, 3000.0)))
+        out.append(Loss(f"eddy {side}", s.cells(f"magnets.{side}"), np.full(5, 0.2), magnets))
     return out
 
 

@@ -8,16 +8,24 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from hidden.truth import faults, foreign
 from hidden.truth.archetype import Archetype, Hidden, Plan, Spot
-from hidden.truth.body import Body, Joint, Skeleton
+from hidden.truth.body import Body, Cells, Joint, Skeleton
 from hidden.truth.change import Change
 from hidden.truth.draw import Draw
 from hidden.truth.effects import METER, airflow, bridge, covered, draught, heating, less
-from hidden.truth.films import across_gap, cylinder_still, plate_still, radiation
-from hidden.truth.losses import bearing, bertotti, copper, joule
+from hidden.truth.films import (
+    across_gap,
+    bearing,
+    copper,
+    cylinder_still,
+    free_film,
+    joule,
+    magnet_eddy,
+    plate_still,
+    steel,
+)
 from hidden.truth.machine import Array, Film, Inputs, Loss
 from hidden.truth.profile import Rng, levels, steady, until
 from hidden.truth.readings import Logger
@@ -40,7 +48,7 @@ def viscosity(T: Array) -> Array:
 class OilLoop:
     """Tank, both sides' nozzles, what drips off, cooler and back; the cooler works between mean temperatures."""
 
-    sides: tuple[NDArray[np.int64], NDArray[np.int64]]
+    sides: tuple[Cells, Cells]
     back: tuple[int, int, int]  # dripped off, cooled, tank
     flow: float
     weld: float
@@ -120,11 +128,11 @@ def films(s: Skeleton, d: Draw) -> list[Film]:
     def ends(T: Array, To: Array, u: Inputs) -> Array:
         return d.factor("wet rotor", 0.25) * (12.0 + 110.0 * flung(u) ** 0.8) * (29.0 / viscosity(To)) ** 0.1
 
-    def drum(T: Array, Ta: Array, u: Inputs) -> Array:
-        return still * cylinder_still(T, Ta, 0.25) + radiation(T, Ta, 0.8)
+    drum = free_film(cylinder_still, 0.25, still, 0.8)
+    plate = free_film(plate_still, 0.22, still, 0.8)
 
-    def plate(T: Array, Ta: Array, u: Inputs) -> Array:
-        return still * plate_still(T, Ta, 0.22) + radiation(T, Ta, 0.8)
+    def washed(T: Array, To: Array, u: Inputs) -> float:
+        return 85.0 * wet * (u["flow_l_min"] / 8.0) ** 0.2
 
     out = [
         Film("drum", s.cells("housing"), "T_ambient", np.full(8, 0.35 / 8), drum),
@@ -136,13 +144,7 @@ def films(s: Skeleton, d: Draw) -> list[Film]:
         out += [
             Film(f"spray.{end}", s.cells(end), oil[[0, 0, 1, 1, 2]], np.full(5, area / 5), sprayed),
             Film(f"flung.{end}", np.array([s.cell("rotor", x)]), oil[[1]], np.array([0.03]), ends),
-            Film(
-                f"wet.{end}",
-                face,
-                oil[[2]],
-                np.full(5, 0.05 / 5),
-                lambda T, To, u: 85.0 * wet * (u["flow_l_min"] / 8.0) ** 0.2,
-            ),
+            Film(f"wet.{end}", face, oil[[2]], np.full(5, 0.05 / 5), washed),
             Film(f"plate.{end}", face, "T_ambient", np.full(5, 0.07 / 5), plate),
         ]
     return out
@@ -151,15 +153,8 @@ def films(s: Skeleton, d: Draw) -> list[Film]:
 def losses(s: Skeleton, d: Draw) -> list[Loss]:
     """Eddies grow from layer to layer and fall as copper warms; ends carry direct current's loss only."""
     R, ac = R20 * d.factor("copper", 0.04), 0.22 * d.factor("ac", 0.2)
-    kh, ke, kx = 150.0 * d.factor("iron", 0.15), 160.0 * d.factor("eddy", 0.2), 45.0 * d.factor("excess", 0.3)
-    km = 70.0 * d.factor("magnet", 0.2)
-
-    def iron(T: Array, u: Inputs) -> Array:
-        return bertotti(T, abs(u["speed_rpm"]) / RATED, kh, ke, kx)
-
-    def eddy(T: Array, u: Inputs) -> Array:
-        return km * (abs(u["speed_rpm"]) / RATED) ** 1.9 / (1.0 + 0.0005 * (T - 40.0))
-
+    iron = steel(d, RATED, 150.0, 160.0, 45.0)
+    eddy = magnet_eddy(70.0 * d.factor("magnet", 0.2), RATED)
     out = [
         Loss("teeth", s.cells("teeth"), np.full(6, 0.6 / 6), iron),
         Loss("yoke", s.cells("yoke"), np.full(6, 0.4 / 6), iron),

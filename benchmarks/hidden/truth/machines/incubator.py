@@ -3,16 +3,15 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
 from hidden.truth import faults, foreign
 from hidden.truth.archetype import Archetype, Hidden, Plan, Spot
-from hidden.truth.body import Body, Joint, Skeleton
+from hidden.truth.body import Body, Cells, Joint, Skeleton
 from hidden.truth.change import Change
 from hidden.truth.draw import Draw
 from hidden.truth.effects import METER, bridge, covered, draught, heating, less, room_air, switched, to_room
-from hidden.truth.films import plate_still, radiation
-from hidden.truth.machine import Array, Film, Loss
+from hidden.truth.films import free_film, plate_still
+from hidden.truth.machine import Array, Film, Inputs, Loss
 from hidden.truth.profile import Rng, steady
 from hidden.truth.readings import Logger
 
@@ -54,8 +53,7 @@ def films(s: Skeleton, d: Draw) -> list[Film]:
 
         return h
 
-    def outside(T: Array, Ta: Array, u) -> Array:
-        return still * plate_still(T, Ta, 0.35) + radiation(T, Ta, 0.9)
+    outside = free_film(plate_still, 0.35, still, 0.9)
 
     air, out = s.cells("air"), []
     for body, area, h0 in (("plate", 0.06, 9.0), ("inner", 0.5, 4.2), ("rack", 0.35, 5.4), ("lid", 0.1, 3.6)):
@@ -70,7 +68,7 @@ def films(s: Skeleton, d: Draw) -> list[Film]:
     ]
 
 
-def _mixing(air: NDArray[np.int64]) -> list[Film]:
+def _mixing(air: Cells) -> list[Film]:
     """Layers of air change places, faster when stirred."""
     return [
         Film("mixing", air[[k]], air[[k + 1]], np.ones(1), lambda T, Ta, u: 3.0 + 25.0 * u["fan_on"]) for k in (0, 1)
@@ -79,13 +77,12 @@ def _mixing(air: NDArray[np.int64]) -> list[Film]:
 
 def losses(s: Skeleton, d: Draw) -> list[Loss]:
     watts = WATTS * d.factor("heater", 0.05)
+
+    def heater(T: Array, u: Inputs) -> Array:
+        return watts * u["heater_on"] * (1.0 - 2e-4 * (T - 40.0))
+
     return [
-        Loss(
-            "heater",
-            s.cells("plate"),
-            np.full(4, 0.25),
-            lambda T, u: watts * u["heater_on"] * (1.0 - 2e-4 * (T - 40.0)),
-        ),
+        Loss("heater", s.cells("plate"), np.full(4, 0.25), heater),
         Loss("stirrer", s.cells("air"), np.full(3, 1 / 3), lambda T, u: STIRRER * u["fan_on"]),
     ]
 

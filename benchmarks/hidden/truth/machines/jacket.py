@@ -10,8 +10,19 @@ from hidden.truth.body import Body, Joint, Skeleton
 from hidden.truth.change import Change
 from hidden.truth.draw import Draw
 from hidden.truth.effects import METER, airflow, covered, draught, heating, less, stirred_gap
-from hidden.truth.films import across_gap, channel, cylinder_still, plate_still, radiation, stirred
-from hidden.truth.losses import bearing, bertotti, joule
+from hidden.truth.films import (
+    across_gap,
+    bearing,
+    channel,
+    cylinder_still,
+    free_film,
+    joule,
+    magnet_eddy,
+    plate_still,
+    radiation,
+    steel,
+    stirred,
+)
 from hidden.truth.machine import Array, Film, Inputs, Loss, Stream
 from hidden.truth.profile import Rng, levels, steady, until
 
@@ -82,8 +93,7 @@ def films(s: Skeleton, d: Draw) -> list[Film]:
         clean = 1.0 - u.get("fade.housing", 0.0)
         return clean * (still * cylinder_still(T, Ta, 0.25) + radiation(T, Ta, emissivity))
 
-    def shield(T: Array, Ta: Array, u: Inputs) -> Array:
-        return still * plate_still(T, Ta, 0.24) + radiation(T, Ta, emissivity)
+    shield = free_film(plate_still, 0.24, still, emissivity)
 
     def wet(T: Array, Tf: Array, u: Inputs) -> Array:
         return weight * channel(0.5 * (T + Tf), u["flow_l_min"], 1.2e-4, 0.010)
@@ -120,26 +130,16 @@ def inside(s: Skeleton, d: Draw) -> list[Film]:
 
 def losses(s: Skeleton, d: Draw) -> list[Loss]:
     R = 8e-3 * d.factor("copper", 0.04)
-    kh, ke, kx = 160.0 * d.factor("iron", 0.15), 190.0 * d.factor("eddy", 0.2), 50.0 * d.factor("excess", 0.3)
-    km = 40.0 * d.factor("magnet", 0.2)
-
-    def iron(T: Array, u: Inputs) -> Array:
-        return bertotti(T, u["speed_rpm"] / RATED, kh, ke, kx)
-
+    iron = steel(d, RATED, 160.0, 190.0, 50.0)
+    eddy = magnet_eddy(40.0 * d.factor("magnet", 0.2), RATED)
     out = [
         Loss("slot", s.cells("slot"), np.full(11, 0.5 / 11), joule(R)),
         Loss("teeth", s.cells("teeth"), np.full(11, 0.6 / 11), iron),
         Loss("yoke", s.cells("yoke"), np.full(11, 0.4 / 11), iron),
-        Loss(
-            "eddy",
-            s.cells("magnets"),
-            np.full(11, 1 / 11),
-            lambda T, u: km * (u["speed_rpm"] / RATED) ** 1.9 / (1.0 + 0.0005 * (T - 40.0)),
-        ),
+        Loss("eddy", s.cells("magnets"), np.full(11, 1 / 11), eddy),
     ]
     for end, _ in ENDS:
         P = 22.0 * d.factor(f"bearing.{end}", 0.25)
-
         out.append(Loss(f"end.{end}", s.cells(f"winding.{end}"), np.full(5, 0.25 / 5), joule(R)))
         out.append(Loss(f"grease.{end}", s.cells(f"bearing.{end}"), np.full(2, 0.5), bearing(P, RATED, 0.004)))
     return out

@@ -13,8 +13,7 @@ from hidden.truth.body import Body, Joint, Skeleton
 from hidden.truth.change import Change
 from hidden.truth.draw import Draw
 from hidden.truth.effects import METER, airflow, covered, draught, heating, joined, less, spinning, switched, warming
-from hidden.truth.films import across_gap, plate_still, radiation
-from hidden.truth.losses import ALPHA, joule
+from hidden.truth.films import ALPHA, across_gap, free_film, joule, plate_still, radiation
 from hidden.truth.machine import Array, Film, Inputs, Loss
 from hidden.truth.profile import Rng, levels, steady, until
 from hidden.truth.readings import Logger
@@ -85,8 +84,7 @@ def outside(s: Skeleton, d: Draw) -> list[Film]:
         calm = 0.55 * still * plate_still(T, Ta, 0.35) + 0.3 * radiation(T, Ta, 0.9)
         return (calm**4 + (level * fade * (abs(u["speed_rpm"]) / RATED) ** power) ** 4) ** 0.25
 
-    def face(T: Array, Ta: Array, u: Inputs) -> Array:
-        return still * plate_still(T, Ta, 0.4) + radiation(T, Ta, 0.9)
+    face = free_film(plate_still, 0.4, still, 0.9)
 
     def hood(T: Array, Ta: Array, u: Inputs) -> Array:
         calm = 0.5 * still * plate_still(T, Ta, 0.4)

@@ -10,8 +10,7 @@ from hidden.truth.body import Body, Joint, Skeleton
 from hidden.truth.change import Change
 from hidden.truth.draw import Draw
 from hidden.truth.effects import METER, covered, draught, heating, joined, less, spinning, switched, warming
-from hidden.truth.films import across_gap, cylinder_still, plate_still, radiation
-from hidden.truth.losses import ALPHA, joule
+from hidden.truth.films import ALPHA, across_gap, cylinder_still, free_film, joule, plate_still
 from hidden.truth.machine import Array, Film, Loss
 from hidden.truth.profile import Rng, levels, steady, until
 from hidden.truth.readings import Logger
@@ -47,12 +46,8 @@ def films(s: Skeleton, d: Draw) -> list[Film]:
     """Free air on a small black box and on its bracket; the rotor stirs its gap of half a millimetre."""
     still, g = d.factor("still", 0.12), 0.45e-3 / d.factor("gap", 0.15)
 
-    def box(T: Array, Ta: Array, u) -> Array:
-        return still * cylinder_still(T, Ta, 0.055) + radiation(T, Ta, 0.85)
-
-    def plate(T: Array, Ta: Array, u) -> Array:
-        return still * plate_still(T, Ta, 0.12) + radiation(T, Ta, 0.1)
-
+    box = free_film(cylinder_still, 0.055, still, 0.85)
+    plate = free_film(plate_still, 0.12, still, 0.1)
     return [
         Film("box", s.cells("case"), "T_ambient", np.full(6, 0.013 / 6), box),
         Film("lid", s.cells("lid"), "T_ambient", np.full(2, 0.0015), box),

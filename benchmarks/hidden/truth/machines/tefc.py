@@ -10,8 +10,18 @@ from hidden.truth.body import Body, Joint, Skeleton
 from hidden.truth.change import Change
 from hidden.truth.draw import Draw
 from hidden.truth.effects import METER, airflow, bridge, covered, draught, fading, heating, less, spinning, stirred_gap
-from hidden.truth.films import across_gap, cylinder_still, mixed, plate_still, radiation, stirred
-from hidden.truth.losses import bearing, bertotti, joule
+from hidden.truth.films import (
+    across_gap,
+    bearing,
+    cylinder_still,
+    free_film,
+    joule,
+    mixed,
+    plate_still,
+    radiation,
+    steel,
+    stirred,
+)
 from hidden.truth.machine import Array, Film, Loss
 from hidden.truth.profile import Rng, levels, steady, until
 
@@ -81,9 +91,7 @@ def outside(s: Skeleton, d: Draw) -> list[Film]:
         clean = 1.0 - u.get("fade.housing", 0.0)
         return clean * (mixed(blown, still * cylinder_still(T, Ta, 0.26)) + 0.8 * radiation(T, Ta, emissivity))
 
-    def shield(T: Array, Ta: Array, u) -> Array:
-        return still * plate_still(T, Ta, 0.25) + radiation(T, Ta, emissivity)
-
+    shield = free_film(plate_still, 0.25, still, emissivity)
     cowl = 35.0 * d.factor("cowl", 0.2)
 
     def hooded(T: Array, Ta: Array, u) -> Array:
@@ -123,11 +131,7 @@ def inside(s: Skeleton, d: Draw) -> list[Film]:
 
 def losses(s: Skeleton, d: Draw) -> list[Loss]:
     R1, R2 = 0.5 * d.factor("copper", 0.04), 0.3 * d.factor("cage", 0.12)
-    kh, ke, kx = 80.0 * d.factor("iron", 0.15), 50.0 * d.factor("eddy", 0.2), 20.0 * d.factor("excess", 0.3)
-
-    def iron(T: Array, u) -> Array:
-        return bertotti(T, u["speed_rpm"] / RATED, kh, ke, kx)
-
+    iron = steel(d, RATED, 80.0, 50.0, 20.0)
     out = [
         Loss("slot", s.cells("slot"), np.full(11, 0.45 / 11), joule(R1)),
         Loss("teeth", s.cells("teeth"), np.full(11, 0.55 / 11), iron),
@@ -136,7 +140,6 @@ def losses(s: Skeleton, d: Draw) -> list[Loss]:
     ]
     for end, _ in ENDS:
         P = 14.0 * d.factor(f"bearing.{end}", 0.25)
-
         out.append(Loss(f"end.{end}", s.cells(f"winding.{end}"), np.full(5, 0.275 / 5), joule(R1)))
         out.append(Loss(f"grease.{end}", s.cells(f"bearing.{end}"), np.full(2, 0.5), bearing(P, RATED)))
     return out

@@ -13,8 +13,7 @@ from hidden.truth.body import Body, Joint, Skeleton
 from hidden.truth.change import Change
 from hidden.truth.draw import Draw
 from hidden.truth.effects import METER, bridge, covered, draught, fading, heating, less, warming
-from hidden.truth.films import plate_still, radiation
-from hidden.truth.losses import ALPHA
+from hidden.truth.films import ALPHA, plate_still, radiation
 from hidden.truth.machine import Array, Film, Inputs, Loss, Stream
 from hidden.truth.profile import Rng, levels, steady
 from hidden.truth.readings import Logger

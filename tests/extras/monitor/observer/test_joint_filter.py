@@ -8,7 +8,7 @@ from watched import run
 
 from extras.monitor.observer.constants import Constants, with_motion
 from extras.monitor.observer.joint_filter import JointFilter, _Terms
-from extras.monitor.observer.process_noise import ProcessNoise
+from extras.monitor.observer.kalman import ProcessNoise
 from lumped.model.build import bare_network, node_link, node_source
 from lumped.model.network import Parameter, Row
 from lumped.transfer.laws import Fixed, InputPower, Linear, Power

@@ -8,10 +8,10 @@ from small_case import small_case
 from watched import run
 
 from extras.monitor.observer import ProcessNoise, observer
+from extras.monitor.observer.hypotheses import FROZEN_S, LOST_S
+from extras.monitor.observer.kalman import most_doubtful, of_doubt
 from extras.monitor.observer.observer import CORRELATION_S
 from extras.monitor.observer.process import Process, bodies_of
-from extras.monitor.observer.process_noise import most_doubtful, of_doubt
-from extras.monitor.observer.sensor_faults import FROZEN_S, LOST_S
 from lumped.integration.record import Record
 from lumped.model.build import bare_network, node_link
 from lumped.model.network import Row
@@ -42,7 +42,7 @@ def watched(design, truth, y=None, given=(0, 1, 2)):
     process, table, channels = design
     y = truth.y if y is None else y
     sensors, y = [channels[j] for j in given], y[:, list(given)]
-    one = observer(process, ProcessNoise(table, 1200.0), np.sqrt(np.diag(table)), sensors, y[0], AIR, 20.0)
+    one = observer(process, ProcessNoise(table, 1200.0), sensors, y[0], AIR, 20.0)
     return one, one.follow(truth.record, y)
 
 
@@ -56,7 +56,7 @@ def test_it_is_the_kalman_filter_of_the_textbook():
     y = 20.0 + 5.0 * np.sin(np.arange(n) / 30.0)
     sensor = Channel("a", "a", Row(np.array([0]), np.ones(1)), y, sigma)
     process = Process(net, {}, ("a", "b"))
-    one = observer(process, ProcessNoise(W, tau), np.sqrt(np.diag(W)), [sensor], y[:1], {"air": 20.0}, 0.0)
+    one = observer(process, ProcessNoise(W, tau), [sensor], y[:1], {"air": 20.0}, 0.0)
     mean, P = np.array([*one.filter.x, 0.0, 0.0]), one.filter.S @ one.filter.S.T
     got = one.follow(Record(h * np.arange(n), {}, {"air": np.full(n, 20.0)}), y[:, None])
     C, G = np.diag([500.0, 2000.0]), np.array([[2.0, -2.0], [-2.0, 3.0]])
@@ -141,7 +141,7 @@ def test_a_sensor_at_rest_is_not_frozen(design):
     n = 3600
     record = Record(np.arange(float(n)), {"current_A": np.zeros(n)}, {"ambient": np.full(n, 20.0)})
     y = np.full((n, 3), 20.0)
-    one = observer(process, ProcessNoise(table, 1200.0), np.sqrt(np.diag(table)), channels, y[0], AIR, 20.0)
+    one = observer(process, ProcessNoise(table, 1200.0), channels, y[0], AIR, 20.0)
     one.follow(record, y)
     assert one.events == []
     assert n > FROZEN_S
@@ -150,7 +150,7 @@ def test_a_sensor_at_rest_is_not_frozen(design):
 def test_parts_of_a_record_are_the_whole(design):
     truth, (process, table, channels) = run(), design
     _, whole = watched(design, truth)
-    one = observer(process, ProcessNoise(table, 1200.0), np.sqrt(np.diag(table)), channels, truth.y[0], AIR, 20.0)
+    one = observer(process, ProcessNoise(table, 1200.0), channels, truth.y[0], AIR, 20.0)
     out = []
     for first in range(0, 900, 300):
         some = slice(max(first - 1, 0), first + 300)

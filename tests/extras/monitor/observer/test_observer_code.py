@@ -17,8 +17,8 @@ from watched import run
 from extras.export.model import Output
 from extras.monitor.commands import observer as command
 from extras.monitor.observer import ProcessNoise, observer
+from extras.monitor.observer.kalman import of_doubt
 from extras.monitor.observer.process import Process, bodies_of
-from extras.monitor.observer.process_noise import of_doubt
 from extras.monitor.observer_code import MOST_BYTES, observer_files, observer_model
 from geom.errors import InputError
 from lumped.integration.simulate import simulate
@@ -52,7 +52,7 @@ def made(tmp_path_factory):
     looks = [Output(n, r) for n, r in mean_rows(network).items()]
     given = tests[0].channels
     ranges = reference_of(network, tests)
-    return observer_model(process, noise, np.sqrt(np.diag(table)), 20.0, given, ranges, looks, np.array(BIAS_K))
+    return observer_model(process, noise, 20.0, given, ranges, looks, np.array(BIAS_K))
 
 
 @pytest.fixture(scope="module")
@@ -66,9 +66,7 @@ def precise(made):
 
 
 def in_python(made, truth, y):
-    one = observer(
-        made.process, made.noise, made.table_sd, made.sensors, y[0], {"ambient": 20.0}, made.rise_K, made.bias
-    )
+    one = observer(made.process, made.noise, made.sensors, y[0], {"ambient": 20.0}, made.rise_K, made.bias)
     samples, codes = [], []
     rows = [o.row for o in made.model.outputs]
     for s in one.follow(truth.record, y):
@@ -109,7 +107,7 @@ def test_it_fits_on_a_controller(made, code):
 def test_an_observer_too_large_is_refused(made):
     sensors = [replace(made.sensors[0], name=f"T{i}") for i in range(60)]
     with pytest.raises(InputError, match="fewer sensors"):
-        observer_model(made.process, made.noise, made.table_sd, 20.0, sensors, Reference(), made.model.outputs)
+        observer_model(made.process, made.noise, 20.0, sensors, Reference(), made.model.outputs)
 
 
 def test_the_code_is_clean_c99_without_allocation(made, tmp_path):

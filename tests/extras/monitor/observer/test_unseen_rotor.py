@@ -5,9 +5,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from extras.monitor.observer.kalman import of_doubt, thinned
 from extras.monitor.observer.learning import design_of, taught, unsettled
 from extras.monitor.observer.process import bodies_of
-from extras.monitor.observer.process_noise import of_doubt, thinned
 from thermoscope.case_folder.folder import load_case
 from validation.comparison.error_budget import model_of
 from validation.comparison.predict import predict, record

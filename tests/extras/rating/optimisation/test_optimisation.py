@@ -9,15 +9,12 @@ import pytest
 from numpy.testing import assert_allclose
 
 from extras.rating.design.machine_keys import MachineFile
-from extras.rating.hot_spots import HotSpots
-from extras.rating.optimisation.auxiliaries import auxiliary_power, way_of
-from extras.rating.optimisation.corrections import errors, learned
-from extras.rating.optimisation.driven import Driven
-from extras.rating.optimisation.electrics import electrics_of
+from extras.rating.optimisation.electrics import Driven, auxiliary_power, electrics_of, way_of
 from extras.rating.optimisation.problem import AUXILIARY, COPPER, PEAK, SETTLING, Problem
 from extras.rating.optimisation.rest import losses, rest, without_feedback
 from extras.rating.optimisation.search import Design, Effort, nsga2, pareto_set, unsga3
-from extras.rating.optimisation.space import Space, Variable
+from extras.rating.optimisation.space import Space, Variable, errors, learned
+from extras.rating.points import HotSpots
 from geom.errors import InputError, MissingDependency
 from geom.machine_file import load_machine
 from lumped.circuits.hydraulics import Duct, friction, pressure_drop, pumping_power
