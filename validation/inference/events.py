@@ -8,7 +8,6 @@ effect for a little longer, which is linear whatever the size.
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from contextlib import suppress
 from dataclasses import dataclass, replace
 from math import floor, log10
 from typing import Any
@@ -34,7 +33,7 @@ from validation.effects.registry import extended
 from validation.effects.sensors.reading_fault import ReadingFault
 from validation.effects.time_window import AND, Event, Span, TimeWindow, lasts
 from validation.inference.columns import amplitudes, effect_columns
-from validation.inference.evidence import Evidence, joined
+from validation.inference.evidence import ENOUGH, Evidence, joined
 from validation.inference.hypotheses import (
     LENGTHS,
     REPORTED,
@@ -58,7 +57,7 @@ TANGENT_RANGE = 0.1  # of an event's amplitude: after a larger change its tangen
 DIRECTIONS = ((1, 0), (0, 1), (1, 1))  # begin, end, both
 WORSE = 50.0  # nats by first tangents from which ends are not run again: of 3,000 runs none so far behind came first
 STEERED = 10.0  # timing steps that ends may be moved by their tangents at once
-STEERS = 8  # of all ends together
+STEERS, LEAST_DAMPING = 20, 0.01  # steps of all ends together, and share of the curvature from which one is damped
 ELSEWHERE = 1.5  # times the size of before, beyond which ends are looked for far away again
 MOVES = 8  # of the ends and refitting with them: of a size that was ten times off at first five were needed
 RIVALS, HALF = 2, 0.5  # that are not likely yet: how many get their ends anew, and what they explain of the most
@@ -430,43 +429,52 @@ def refit_span(fit: Fit, effect: During, test: Test, spans: Sequence[Span], i: i
 
 
 def steered_ends(fit: Fit, effect: During, tests: Sequence[Test], now: Event) -> Event:
-    """An event with all its ends moved where their tangents point, its size and all else with them: where that fits
-    worse half as far, until none moves by a step any more."""
+    """An event with all its ends moved where their tangents point, its size and all else with them, by damped steps
+    (Levenberg-Marquardt) until nothing is gained any more."""
     closer, near = fit, list(tests)
     for i, t in enumerate(tests):
         if t.name in now.spans:
             ends = np.ravel(now.spans[t.name]).tolist()
             closer, near[i] = closer_look(closer, t, ends, STEERED * timing_step(t), fit.values)
-    p = len(fit.unknowns.parameters)
 
-    def state(e: Event, theta: Array) -> tuple[float, Array, Array]:
-        """Objective with such ends, and what tangents ask for: a step of all else, and of each end in timing steps."""
-        if not (size := fit.unknowns.values(theta)[effect.name]):  # nothing that could last longer
-            return float("inf"), theta, np.zeros(0)
+    def state(e: Event, theta: Array) -> Iterate | None:
+        """Where the fit stands with such ends: behind its own parameters each end by a step, in parts of the size."""
+        if not (size := abs(fit.unknowns.values(theta)[effect.name])):  # nothing that could last longer
+            return None
         pieces = [During.of(effect.base, piece.name) for piece in end_pieces(tests, e)]
-        network = extended(with_condition(fit.network, effect.condition, e.name), pieces)
-        far = STEERED * abs(size)
-        longer = [
-            replace(q, prior_sd=far, low=q.neutral - far, high=q.neutral + far)
-            for q in network.parameters[-len(pieces) :]
-        ]
+        network, far = extended(with_condition(fit.network, effect.condition, e.name), pieces), STEERED * size
+        new = network.parameters[-len(pieces) :]
+        longer = [replace(q, prior_sd=far, low=q.neutral - far, high=q.neutral + far) for q in new]
         unknowns, begin = Unknowns((*fit.unknowns.parameters, *longer)), np.append(theta, np.zeros(len(pieces)))
-        it = Iterate(network, near, unknowns, parameter_values(network, {}), begin, fit.noise, error=closer.error)
-        step = bounded_step(*it.slope(), it.theta, it.low, it.high) - it.theta
-        return it.objective, step[:p], step[p:] / size
+        try:
+            return Iterate(network, near, unknowns, parameter_values(network, {}), begin, fit.noise, error=closer.error)
+        except NoSolution:
+            return None
 
-    part, theta = 1.0, fit.theta
-    least, more, moves = state(now, theta)
+    def left(it: Iterate) -> float:
+        """Objective once all but the ends has moved, by tangents."""
+        H, g = it.slope()
+        return it.objective - 0.5 * float(g[:p] @ np.linalg.solve(H[:p, :p], g[:p]))
+
+    p, damping, at = len(fit.unknowns.parameters), 0.0, state(now, fit.theta)
     for _ in range(STEERS):
-        new = moved_ends(tests, now, part * moves)
-        if new == now:
+        if at is None or damping > 1.0:
             break
-        with suppress(NoSolution):
-            left, then, onward = state(new, theta + part * more)
-            if left < least:
-                now, theta, least, more, moves, part = new, theta + part * more, left, then, onward, 1.0
-                continue
-        part *= 0.5
+        (H, g), size = at.slope(), fit.unknowns.values(at.theta[:p])[effect.name]
+        H += damping * np.diag(np.diag(H))
+        longer = (bounded_step(H, g, at.theta, at.low, at.high) - at.theta)[p:] / size
+        for some in (
+            longer,
+            longer / max(np.abs(longer).max(), 1e-9),
+        ):  # along a ridge a step that is not whole gets lost
+            new, steps = moved_ends(tests, now, some)
+            rest = g[:p] - H[:p, p:] @ (size * steps)
+            there = state(new, bounded_step(H[:p, :p], rest, at.theta[:p], at.low[:p], at.high[:p]))
+            if there is not None and left(there) < left(at) - ENOUGH:
+                now, at, damping = new, there, 0.1 * damping if damping > LEAST_DAMPING else 0.0
+                break
+        else:
+            damping = max(10.0 * damping, LEAST_DAMPING)
     return now
 
 
@@ -481,13 +489,14 @@ def end_pieces(tests: Sequence[Test], e: Event) -> list[Event]:
     ]
 
 
-def moved_ends(tests: Sequence[Test], e: Event, longer: Array) -> Event:
-    """The event with each end moved outwards by so many steps, some at most; a span that would vanish or meet another
-    stays.
+def moved_ends(tests: Sequence[Test], e: Event, longer: Array) -> tuple[Event, Array]:
+    """The event with each end moved outwards by so many steps, some at most, and by how many it is; a span that would
+    vanish or meet another stays.
 
     longer : as of `end_pieces`
     """
-    out, moves = dict[str, list[Span]](), iter(np.clip(np.nan_to_num(longer), -STEERED, STEERED).reshape(-1, 2))
+    out, moves = dict[str, list[Span]](), iter(np.clip(longer, -STEERED, STEERED).reshape(-1, 2))
+    steps: list[float] = []
     for t in [t for t in tests if t.name in e.spans]:
         spans, step = list(e.spans[t.name]), timing_step(t)
         for i, (begin, end) in enumerate(spans):
@@ -495,8 +504,9 @@ def moved_ends(tests: Sequence[Test], e: Event, longer: Array) -> Event:
             new, last = whole_instants(t, np.array([begin - x, end + y])).tolist(), spans[i - 1][1] if i else -np.inf
             if last < new[0] < new[1] < (spans[i + 1][0] if i + 1 < len(spans) else np.inf):
                 spans[i] = new[0], new[1]
+            steps += [(begin - spans[i][0]) / step, (spans[i][1] - end) / step]
         out[t.name] = spans
-    return Event.of(out)
+    return Event.of(out), np.array(steps)
 
 
 def closest_span(
