@@ -238,7 +238,7 @@ def rating_summary(document: Mapping[str, Any]) -> th.Summary:
     if not np.isfinite(first["value"]):
         sentence = f"Continuous: no {main} that this model knows reaches a limit."
     elif np.isfinite(margin := 100.0 * (first["value"] / reference["value"] - 1.0)):
-        more = f"{margin:.3g} % in hand" if margin >= 0.0 else f"{-margin:.3g} % of it too much"
+        more = f"{margin:.3g} % in hand" if margin >= 0.0 else f"the limit is {-margin:.3g} % below it"
         rated = f"{reference['of']} {reference['value']:.4g} {th.stem_and_unit(main)[1]}"
         sentence += f" {rated.rstrip()}: {more}."
     begin = "cold" if reference["start"] == "cold" else f"rest under {main} = {reference['start']:.4g}"
