@@ -53,9 +53,7 @@ from validation.threads import side_by_side
 Values = Mapping[str, float]
 GRID_POINTS = 15  # instants around each end
 COARSEST = 4.0  # timing steps between instants that tell one stretch from another; what carries weight is timed closer
-TANGENT_RANGE = 0.1  # of an event's amplitude: after a larger change its tangent is made anew
 DIRECTIONS = ((1, 0), (0, 1), (1, 1))  # begin, end, both
-WORSE = 50.0  # nats by first tangents from which ends are not run again: of 3,000 runs none so far behind came first
 STEERED = 10.0  # timing steps that ends may be moved by their tangents at once
 STEERS, LEAST_DAMPING = 20, 0.01  # steps of all ends together, and share of the curvature from which one is damped
 ELSEWHERE = 1.5  # times the size of before, beyond which ends are looked for far away again
@@ -408,7 +406,6 @@ def refit_ends(evidence: Evidence, fit: Fit, effect: During, event: Event, reach
 def refit_span(fit: Fit, effect: During, test: Test, spans: Sequence[Span], i: int, reach_s: float) -> Span:
     """Begin and end of the i-th of an event's spans in a test that fit best, to some steps."""
     others = [*spans[:i], *spans[i + 1 :]]
-
     amplitude = Unknowns((next(q for q in fit.unknowns.parameters if q.name == effect.name),))
     size, fixed = amplitude.coordinates(fit.values), {**parameter_values(fit.network, {}), **fit.values}
 
@@ -463,10 +460,8 @@ def steered_ends(fit: Fit, effect: During, tests: Sequence[Test], now: Event) ->
         (H, g), size = at.slope(), fit.unknowns.values(at.theta[:p])[effect.name]
         H += damping * np.diag(np.diag(H))
         longer = (bounded_step(H, g, at.theta, at.low, at.high) - at.theta)[p:] / size
-        for some in (
-            longer,
-            longer / max(np.abs(longer).max(), 1e-9),
-        ):  # along a ridge a step that is not whole gets lost
+        one = longer / max(float(np.abs(longer).max()), 1e-9)  # along a ridge steps are not whole, and would get lost
+        for some in (longer, one):
             new, steps = moved_ends(tests, now, some)
             rest = g[:p] - H[:p, p:] @ (size * steps)
             there = state(new, bounded_step(H[:p, :p], rest, at.theta[:p], at.low[:p], at.high[:p]))
