@@ -161,7 +161,7 @@ def load_case(
         settings.odds,
     )
     steps = {r.test.name: r.step for r in read}
-    notes = (*notes, *_assumed_reference(case, settings))
+    notes = (*notes, *_assumed_reference(case, settings), *_fitted_holdouts(case))
     return Folder(
         settings, _checked(case, history, settings), history, notes, _positions(sheets), built, findings, steps
     )
@@ -216,6 +216,14 @@ def _assumed_reference(case: Case, settings: Settings) -> list[str]:
         f"{settings.model_file} does not say what its exponents and effects refer to, as files of before did not: "
         f"taken from the tests that are not held out{f' ({words})' if words else ''}; the next step writes it down"
     ]
+
+
+def _fitted_holdouts(case: Case) -> list[str]:
+    """A note on tests that are held out now, and that the model was fitted to."""
+    fitted = case.model.reference.tests if case.model.values and case.model.reference else ()
+    names = ", ".join(t.name for t in case.tests if t.role == "hold-out" and t.name in fitted)
+    right = "calibrate from revision 0 again, or hold out another"
+    return [f"{names}: held out, but the model was fitted to it, so its error says little; {right}"] if names else []
 
 
 def _positions(sheets: Iterable[Sheet]) -> dict[str, tuple[float, ...]]:

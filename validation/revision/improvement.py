@@ -194,13 +194,17 @@ def _first_fit(case: Case, progress: Progress) -> Revision | None:
 
 def ended(case: Case, stairs: Sequence[Step], diagnosis: Diagnosis, why: str) -> Improvement:
     """The improvement, and beside why it ended how near it came to the best plain model."""
-    yard, ours = yardstick(case), stairs[-1].left_out_K
+    yard, ours, last = yardstick(replace(case, tests=case.usable)), stairs[-1].left_out_K, stairs[-1].revision
     finite = {kind: K for kind, K in yard.left_out.items() if np.isfinite(K)} if yard else {}
     if not finite:
         why = f"{why}; no plain model can be learnt from these tests, so nothing says how good a model could be"
         return Improvement(case, tuple(stairs), diagnosis, why + rise_words(stairs))
     kind, K = min(finite.items(), key=lambda x: x[1])
-    beside = f"each test predicted from the others {ours:.2f} K, by {NAMES[kind]} {K:.2f} K"
+    beside = f"each test predicted from the others: this model {ours:.2f} K, {NAMES[kind]} {K:.2f} K"
+    if last is None or last.left_out_K is None:  # nothing was left out of its fit
+        beside = (
+            f"as fitted this model leaves {ours:.2f} K; each test predicted from the others, {NAMES[kind]} {K:.2f} K"
+        )
     why = f"{beside}; {why}" if ours > WORTH * K else f"{why}; {beside}"
     return Improvement(case, tuple(stairs), diagnosis, why + rise_words(stairs), K)
 
@@ -278,7 +282,7 @@ def further_step(
     left_out : error (K) of the model on tests left out in turn
     refused : what was tried before, which is not tried again; grows by what is
     """
-    yard = yardstick(case) if supervisor.suggest else None
+    yard = yardstick(replace(case, tests=case.usable)) if supervisor.suggest else None
     if yard is None:
         return None, {}
     best, free = min(yard.left_out.values()), yard.left_out["free_network"]

@@ -18,6 +18,10 @@ def verdict(diagnosis: Document | None, comparison: Document | None) -> tuple[st
     code = diagnosis["verdict"]
     names = [c.get("words") or c["effect"] for c in diagnosis["candidates"] if c["decision"] in ("named", "group")]
     off = " ".join(r["words"] for r in diagnosis.get("remainder", [])[:1])
+    if code == "adequate" and not off and (places := _off_places(comparison)):
+        return "warn", f"Nothing is found missing from the model, yet it is off at {spoken(places)}."
+    said = f"{diagnosis.get('words', '')[:1].upper()}{diagnosis.get('words', '')[1:]}."
+    contradicted = any(c.get("contradicts") for c in diagnosis.get("checks", []))
     sentences = {
         "adequate": f"Nothing with a name is missing from the model. {off}"
         if off
@@ -27,7 +31,9 @@ def verdict(diagnosis: Document | None, comparison: Document | None) -> tuple[st
         if len(names) > 1
         else f"Perhaps missing from the model: {spoken(names)}. These tests cannot tell.",
         "several": f"Missing from the model: {spoken(names)}.",
-        "outside": f"Heat is missing or in excess{_where(diagnosis)}; no known effect explains it.",
+        "outside": said
+        if contradicted
+        else f"Heat is missing or in excess{_where(diagnosis)}; no known effect explains it.",
         "absorbed": "A calibrated value lies far from what is physically expected; it may hide a missing effect.",
         "data": _elsewhere(diagnosis) or "Check the sensors and inputs first; the error looks like theirs.",
     }
@@ -62,14 +68,15 @@ def spoken(effects: Sequence[str], last: str = "and") -> str:
 
 
 def _agreement(comparison: Document | None) -> tuple[str, str]:
-    over = (
-        [] if comparison is None else [c for t in comparison["tests"] for c in t["channels"] if c["verdict"] == "over"]
-    )
-    if comparison is None or not over:
-        agrees = "The model agrees with the measurements within the uncertainty of readings, inputs, arithmetic."
-        return "good", agrees
-    places = sorted({c["place"] for c in over})
-    return "warn", f"The model disagrees with the measurements at {spoken(places)}."
+    if places := _off_places(comparison):
+        return "warn", f"The model disagrees with the measurements at {spoken(places)}."
+    return "good", "The model agrees with the measurements within the uncertainty of readings, inputs, arithmetic."
+
+
+def _off_places(comparison: Document | None) -> list[str]:
+    """Where a record is over what reading and model may be off by."""
+    tests = comparison["tests"] if comparison else []
+    return sorted({c["place"] for t in tests for c in t["channels"] if c["verdict"] == "over"})
 
 
 def ending(diagnosis: Document | None) -> str:

@@ -218,6 +218,15 @@ def test_a_file_of_before_is_read_with_one_note(tmp_path, thermoscope, fitted):
     assert "does not say" not in now.err
 
 
+def test_a_test_that_was_fitted_is_no_held_out_one(tmp_path, thermoscope, fitted):
+    case = written(tmp_path / "now", FITTED, fitted)
+    (case / "case.toml").write_text((case / "case.toml").read_text().replace('role = "validate"', 'role = "hold-out"'))
+    told = thermoscope("test", "compare", case, "--no-bands").err
+    assert "check: held out, but the model was fitted to it" in " ".join(told.split())
+    before = thermoscope("test", "compare", written(tmp_path / "before", FITTED, fitted), "--no-bands")
+    assert "held out, but" not in before.err
+
+
 def _first(model: str) -> str:
     return "\n[[revision]]\n".join(model.split("\n[[revision]]\n")[:2])
 

@@ -133,8 +133,9 @@ def test_every_end_says_how_near_the_best_plain_model_is_or_what_stops_it(case):
 
     near, far = end(case), end(without(case, ("body", "ambient")))
     assert near.plain_K == far.plain_K == min(yardstick(case).left_out.values())
-    both, ours = f"K, by a free network {near.plain_K:.2f} K", "each test predicted from the others "
-    assert near.why == f"nothing is offered; {ours}{near.stairs[-1].left_out_K:.2f} {both}"
+    both, ours = f"a free network {near.plain_K:.2f} K", "as fitted this model leaves "
+    beside = f"{ours}{near.stairs[-1].left_out_K:.2f} K; each test predicted from the others, {both}"
+    assert near.why == f"nothing is offered; {beside}"
     assert far.why.startswith(ours)
     assert far.why.endswith(f"{both}; nothing is offered")
     worse = without(case, ("body", "ambient"))

@@ -51,6 +51,20 @@ def test_a_free_network_predicts_a_linear_machine_to_the_noise_of_its_sensors(me
     assert measure.hold_out["free_network"] < 2.0 * noise
 
 
+def test_readings_that_mean_nothing_teach_no_plain_model(sound):
+    """A sensor that froze in the first test: with its readings, and with what is left once they are gone."""
+    core, body = 1, 0
+    noon, *others = sound.tests
+    y = noon.channels[core].y.copy()
+    y[20:] = y[20]
+    stuck, gone = (
+        replace(noon, channels=(noon.channels[body], replace(noon.channels[core], y=values)))
+        for values in (y, np.where(np.arange(y.size) < 20, y, np.nan))
+    )
+    both = [yardstick(replace(sound, tests=(test, *others))) for test in (stuck, gone)]
+    assert both[0].left_out == both[1].left_out
+
+
 def test_persistence_is_what_the_readings_stray_from_their_first(sound, measure):
     test = sound.tests[2]
     y = np.column_stack([c.y for c in test.channels])

@@ -160,7 +160,7 @@ def test_pictures_travel_inside(page):
 @pytest.mark.parametrize(
     ("code", "word"),
     [
-        ("adequate", "agrees"),
+        ("adequate", "yet it is off at"),
         ("group", "one of"),
         ("several", "and"),
         ("outside", "near flange.right"),
@@ -171,6 +171,14 @@ def test_pictures_travel_inside(page):
 def test_every_verdict_has_its_words(code, word):
     compare, diagnose = documents()
     assert word in verdict({**diagnose, "verdict": code}, compare)[1]
+
+
+def test_what_contradicts_the_verdict_is_what_the_report_says():
+    compare, diagnose = documents()
+    check = {"check": "tests", "passed": False, "contradicts": True}
+    outside = {**diagnose, "verdict": "outside", "words": "core in dusk reads 7.3 K too high", "checks": [check]}
+    assert verdict(outside, compare)[1] == "Core in dusk reads 7.3 K too high."
+    assert "agrees" in verdict({**diagnose, "verdict": "adequate"}, None)[1]
 
 
 def test_one_cause_that_is_not_sure_is_told_as_such():

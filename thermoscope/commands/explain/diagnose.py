@@ -120,12 +120,16 @@ def _proposed(document: Mapping[str, Any], first: str) -> list[str]:
 
 def diagnosis_summary(document: Mapping[str, Any], called: str) -> Summary:
     """The verdict; of a wrong base only that, for it comes first.  called : what the user calls the case"""
-    sentence, case = " ".join(sentences([*filter(None, (document["words"], document.get("strained")))])), quote(called)
+    plain = document["verdict"] == "adequate" and not document["revision"]  # never calibrated
+    unfitted = "That is of the model calibrated to these tests, not as it stands" if plain else ""
+    said = sentences([*filter(None, (document["words"], unfitted, document.get("strained")))])
+    sentence, case = " ".join(said), quote(called)
     bases, steps, budgets = (document.get(key, []) for key in ("bases", "sampling", "error_budget"))
     if any(h["declared"] and h["excluded"] for h in bases):
         return Summary(sentence, [tables.bases_table(bases)], f"--json FILE; thermoscope bench bases {case}")
     effects, candidates = document.get("named", []), document["candidates"]
-    step = f"model add {case} {join(_proposed(document, effects[0]))}" if effects else f"explain effects {case}"
+    step = f"model calibrate {case}" if plain else f"explain effects {case}"
+    step = f"model add {case} {join(_proposed(document, effects[0]))}" if effects else step
     hidden = [
         f"{h['words']} {f'below {limit(h)}' if isfinite(h['smallest_detectable'] or inf) else 'at any size'}"
         for h in document["cannot_see"]

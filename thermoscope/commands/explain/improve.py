@@ -39,6 +39,7 @@ def improve(
     target: Json = None,
 ) -> int:
     """Diagnose, ask, add, again, until the model is adequate. Exit code 1 if it stops before."""
+    from validation.parameters.unknowns import strain_words
     from validation.revision.improvement import Supervisor, improve as climb, singletons
 
     with progress() as tell:
@@ -57,6 +58,7 @@ def improve(
     errors = result.stairs[-1].comparison
     plain = yardstick_document(folder.yardstick, errors, result.case)
     document = {"case": folder.case.name, **result.document(), "written": ledger.written, **plain}
+    document["strained"] = strain_words(result.case)
     if any(step["effect"] for step in document["stairs"]):
         document["found"] = finding_words(replace(folder, case=result.case, history=ledger.history), errors.document())
     give(document, target, lambda: improvement_summary(document, folder, case))
@@ -128,8 +130,9 @@ def improvement_summary(document: Mapping[str, Any], folder: Folder, called: str
         more += (
             f"; not so? thermoscope explain diagnose {quote(called)} --without {quote(added[-1].partition(' + ')[0])}"
         )
-    plain = f"{document['yardstick']['sentence']} {lacking_words(document)}" if "yardstick" in document else ""
-    why = document["why"]
-    sentence = f"{document.get('found', '')} {why[:1].upper()}{why[1:]}; {outcome}.".strip()
+    yard, why = document.get("yardstick", {"sentence": "", "warning": ""}), document["why"]
+    plain = f"{yard['sentence']} {lacking_words(document)}" if yard["sentence"] else ""
+    said = [yard["warning"], document.get("found", ""), f"{why[:1].upper()}{why[1:]}; {outcome}.", document["strained"]]
+    sentence = " ".join(filter(None, said))
     refusals = Table.of("Tried and refused", document["refused"], "*what | *reason=why")
     return Summary(sentence, [errors, plain, refusals, *further], more)
