@@ -2,7 +2,7 @@
 
 import pytest
 
-from thermoscope.commands.explain.diagnose import _leader, _lost
+from thermoscope.commands.explain.diagnose import _leader, _lost, diagnosis_summary
 from thermoscope.console.summary import LINES, Summary, lay_out
 from validation.tables import candidates_table, events_table
 
@@ -61,3 +61,18 @@ def test_improbable_stretches_wait_for_all():
     events = [{**row, "probability": 0.0}, {**row, "probability": 0.4}]
     assert [r[0] for r in events_table(events).rows] == ["event@2"]
     assert [r[0] for r in events_table(events, likely=False).rows] == ["event@1"]
+
+
+@pytest.mark.parametrize("accepted", [True, False])
+def test_what_add_refuses_is_not_proposed(accepted):
+    name = "convection@flange.right"
+    row = {**candidate(name, "W/K", 0.4, "group"), "score": 3.0, "note": ""}
+    document = {"words": "missing: wind", "verdict": "group", "revision": 1, "named": [name], "candidates": [row]}
+    document |= {"cannot_see": [], "odds": [{"effects": [name], "probability": 0.4}]}
+    tried = {"effects": [name], "accepted": accepted, "why": "1.0 -> 2.0 K"}
+    told = diagnosis_summary({**document, "tried": tried}, "own")
+    assert (f"model add own {name}" in told.more) == accepted
+    said = [part for part in told.parts if isinstance(part, str) and part.startswith("Not proposed")]
+    assert said == ([] if accepted else ["Not proposed, since model add would not accept it: 1.0 -> 2.0 K."])
+    quiet = {**document, "named": [], "verdict": "adequate", "revision": 0, "candidates": []}
+    assert "model calibrate own" in diagnosis_summary(quiet, "own").more

@@ -9,6 +9,7 @@ from shlex import join, quote
 from time import monotonic
 from typing import TYPE_CHECKING, Any
 
+from geom.errors import InputError, NoSolution
 from geom.table import cell
 from geom.text import counted
 from thermoscope.commands.model.error_budget import budget, in_short, sampling
@@ -31,6 +32,8 @@ EXPLANATIONS, ROWS = 5, 10  # shown of them and of candidates
 
 def diagnose(case: Case, target: Json = None, without: Without = None, only: Only = None, quick: Quick = False) -> int:
     """Which effect is missing, how sure, what it is confused with, which test would decide. Exit code 1 if none."""
+    from validation.inference.decide import SURE
+
     with progress() as tell:
         folder, so_far = open_case(case, tell), SoFar(tell)
         try:
@@ -38,6 +41,8 @@ def diagnose(case: Case, target: Json = None, without: Without = None, only: Onl
         except KeyboardInterrupt:
             _stopped(folder, so_far, case)
             raise
+        if not quick and document["named"] and document["odds"][0]["probability"] < SURE:
+            document["tried"] = _tried(folder, _proposed(document, document["named"][0]), tell)
     give(document, target, lambda: diagnosis_summary(document, case))
     return 0 if diagnosis.verdict in ("named", "group", "several") else 1
 
@@ -112,6 +117,18 @@ def diagnosed(
     return diagnosis, document
 
 
+def _tried(folder: Folder, effects: Sequence[str], tell: Progress) -> dict[str, Any]:
+    """What `add` would say of effects that are not sure: nothing is proposed that it refuses."""
+    from validation.revision.revise import add
+
+    tell(f"predicting what was left out with {' and '.join(effects)}")
+    try:
+        step = add(folder.case, effects, tell)
+    except (NoSolution, InputError) as fault:  # the model runs away with it, or has it already
+        return {"effects": list(effects), "accepted": False, "why": str(fault)}
+    return {"effects": list(effects), "accepted": step.accepted, "why": step.why}
+
+
 def _proposed(document: Mapping[str, Any], first: str) -> list[str]:
     """What to add: the effect that is named first, or the set that it is in where that is the likeliest of all."""
     likeliest = document["odds"][0]["effects"] if document.get("odds") else []
@@ -129,7 +146,9 @@ def diagnosis_summary(document: Mapping[str, Any], called: str) -> Summary:
         return Summary(sentence, [tables.bases_table(bases)], f"--json FILE; thermoscope bench bases {case}")
     effects, candidates = document.get("named", []), document["candidates"]
     step = f"model calibrate {case}" if plain else f"explain effects {case}"
-    step = f"model add {case} {join(_proposed(document, effects[0]))}" if effects else step
+    tried = document.get("tried", {"accepted": True})
+    step = f"model add {case} {join(_proposed(document, effects[0]))}" if effects and tried["accepted"] else step
+    refused = "" if tried["accepted"] else f"Not proposed, since model add would not accept it: {tried['why']}."
     hidden = [
         f"{h['words']} {f'below {limit(h)}' if isfinite(h['smallest_detectable'] or inf) else 'at any size'}"
         for h in document["cannot_see"]
@@ -143,6 +162,7 @@ def diagnosis_summary(document: Mapping[str, Any], called: str) -> Summary:
         replace(explanations, rows=explanations.rows[:EXPLANATIONS]),
         *(f"Beside it: {beside}." for x in explained[:1] if (beside := tables.partner_words(x))),
         replace(candidate_rows, rows=candidate_rows.rows[:ROWS]),
+        refused,
         *_leader(candidates),
         *_lost(candidates, effects),
         " ".join(row["words"] for row in document.get("remainder", [])),
