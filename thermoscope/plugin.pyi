@@ -242,6 +242,7 @@ from validation.parameters.reference import LOADS as LOADS, effect_sizes as effe
 from validation.parameters.unknowns import (
     standing as standing,
     standing_reference as standing_reference,
+    start_name as start_name,
     to_coordinate as to_coordinate,
     to_value as to_value,
     value_words as value_words,

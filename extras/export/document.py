@@ -37,6 +37,7 @@ def document(model: Model) -> dict[str, Any]:
         "inputs": [asdict(s) for s in model.inputs],
         "boundaries": [asdict(s) for s in model.boundaries],
         "initial_degC": model.initial_degC,
+        "start_degC": model.start_degC,
         "C": model.C,
         "K0": model.K0,
         "terms": [_term(model, e) for e in range(len(model.factors))],

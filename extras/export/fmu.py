@@ -50,7 +50,9 @@ def variables(model: Model) -> list[Variable]:
         limit = "" if o.limit is None else f"limit {o.limit:g} degC"
         out.append(Variable(o.name, "output", None, "degC", "; ".join(filter(None, [limit, error]))))
     out += [
-        Variable(f"start of {n}", "parameter", model.initial_degC, "degC", "first temperature") for n in nodes(model)
+        Variable(f"start of {n}", "parameter", start, "degC", "first temperature")
+        for n, start, is_node in zip(model.states, model.start_degC, model.node, strict=True)
+        if is_node
     ]
     return [*out, Variable("time", "independent", None, "s")]
 
@@ -61,10 +63,6 @@ def _range(s: Signal) -> str:
 
 def start_of(s: Signal, model: Model) -> float:
     return model.initial_degC if s in model.boundaries else 0.0
-
-
-def nodes(model: Model) -> list[str]:
-    return [name for name, is_node in zip(model.states, model.node, strict=True) if is_node]
 
 
 def token(model: Model) -> str:
@@ -81,7 +79,7 @@ def sources(model: Model, version: int) -> dict[str, str]:
         f'#define FMU_TOKEN "{token(model)}"',
         f"#define THERMAL_NODES {states.size}",
         f"static const double START_SIGNAL[] = {{{starts}}};",
-        f"static const double START_NODE[] = {{{', '.join([f'{model.initial_degC:.17g}'] * states.size)}}};",
+        f"static const double START_NODE[] = {{{', '.join(f'{model.start_degC[i]:.17g}' for i in states)}}};",
         f"static const int NODE_STATE[] = {{{', '.join(map(str, states))}}};",
     ]
     runtime_files = ("fmu.h", f"fmi{version}.c")

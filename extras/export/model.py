@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -68,11 +68,18 @@ class Model:
     sizes: tuple[tuple[str | None, float], ...] = ()
     tolerance: tuple[float, float] = (th.RUN.error_K, th.RUN.error_share)
     initial_degC: float = USUAL_C
+    start_K: Mapping[str, float] = field(default_factory=dict)  # node without a sensor -> how far from that it began
 
     @property
     def signals(self) -> tuple[Signal, ...]:
         """All that is set from outside: inputs, then boundaries."""
         return (*self.inputs, *self.boundaries)
+
+    @property
+    def start_degC(self) -> list[float]:
+        """Where each node began the first test that was fitted; other states at 0."""
+        pairs = zip(self.states, self.node, strict=True)
+        return [self.initial_degC + self.start_K.get(name, 0.0) if is_node else 0.0 for name, is_node in pairs]
 
 
 def exported(folder: th.Folder, limits: Mapping[str, float]) -> Model:
@@ -80,7 +87,9 @@ def exported(folder: th.Folder, limits: Mapping[str, float]) -> Model:
     network, values = th.model_of(folder)
     model = packed(network, values, th.standing_reference(folder.case), outputs(network, folder, limits))
     effects = tuple(e.name for e in folder.case.model.effects)
-    return replace(model, name=folder.case.name, revision=folder.case.model.revision, effects=effects)
+    fitted, first = folder.case.model.values, th.standing_reference(folder.case).tests[:1]
+    start = {n: fitted[name] for n in model.states for t in first if (name := th.start_name(n, t)) in fitted}
+    return replace(model, name=folder.case.name, revision=folder.case.model.revision, effects=effects, start_K=start)
 
 
 def packed(network: Network, values: Mapping[str, float], reference: th.Reference, looks: Sequence[Output]) -> Model:

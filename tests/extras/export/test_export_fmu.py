@@ -2,6 +2,7 @@
 
 import importlib.util
 import json
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -15,7 +16,7 @@ from extras.export.c_code import RUNTIME
 from extras.export.commands.export import export
 from extras.export.compilers import AGREES_K, here, sampled, signals_of
 from extras.export.document import document, mat
-from extras.export.fmu import fmu
+from extras.export.fmu import fmu, variables
 from extras.export.model import exported, packed
 from lumped.integration.simulate import initial_state, simulate
 from measured.case import Reference
@@ -23,6 +24,7 @@ from thermoscope.case_folder.folder import load_case
 from thermoscope.console.terminal import plain
 from validation.comparison.error_budget import model_of
 from validation.comparison.predict import record
+from validation.parameters.unknowns import start_name
 
 fmpy = pytest.importorskip("fmpy")
 
@@ -65,6 +67,18 @@ def test_fmpy_checks_and_runs_it(three, version, tmp_path):
     )
     own = np.column_stack([np.interp(given.time, seen["time"], seen[name]) for name in names])
     assert np.abs(own - y).max() < AGREES_K
+
+
+def test_a_fitted_start_of_what_no_sensor_sees_is_exported(tmp_path):
+    folder = load_case(small_case(tmp_path))
+    test, plain = folder.case.tests[0].name, exported(folder, {})
+    state = next(n for n, is_node in zip(plain.states, plain.node, strict=True) if is_node)
+    model = replace(folder.case.model, values={start_name(state, test): 7.0}, reference=Reference(tests=(test,)))
+    begun = exported(replace(folder, case=replace(folder.case, model=model)), {})
+    each = {v.name: v.start for v in variables(begun)}
+    assert each[f"start of {state}"] == pytest.approx(begun.initial_degC + 7.0)
+    assert document(begun)["start_degC"][plain.states.index(state)] == each[f"start of {state}"]
+    assert {v.start for v in variables(plain) if v.name.startswith("start of ")} == {plain.initial_degC}
 
 
 class Slave:
