@@ -422,7 +422,7 @@ def refit_span(fit: Fit, effect: During, test: Test, spans: Sequence[Span], i: i
 
         return of
 
-    return closest_span(test, spans[i], reach_s, misfits)
+    return closest_span(test, spans[i], reach_s, misfits, COARSEST)
 
 
 def steered_ends(fit: Fit, effect: During, tests: Sequence[Test], now: Event) -> Event:
@@ -505,15 +505,15 @@ def moved_ends(tests: Sequence[Test], e: Event, longer: Array) -> tuple[Event, A
 
 
 def closest_span(
-    test: Test, best: Span, reach_s: float, misfits: Callable[[Span, float], Callable[[Span], float]]
+    test: Test, best: Span, reach_s: float, misfits: Callable[[Span, float], Callable[[Span], float]], steps: float
 ) -> Span:
-    """Begin and end that fit best to some steps: first some instants around them, then others around the best of these,
-    and so on.
+    """Begin and end that fit best to so many timing steps: first some instants around them, then others around the best
+    of these, and so on.
 
     misfits : of the best so far and a reach, what says how badly a span fits; each is run: what is open and has cooled
         a part down to the room shows no tangent of being open longer
     """
-    while reach_s >= COARSEST * timing_step(test):
+    while reach_s >= 0.5 * steps * timing_step(test):
         misfit, results = misfits(best, reach_s), dict[Span, float]()
 
         def misfit_of(
@@ -524,9 +524,9 @@ def closest_span(
             return results[span]
 
         for moves in DIRECTIONS * 2:
-            steps = [instants_around(test, end, reach_s, COARSEST) - end for end in best]
+            around = [instants_around(test, end, reach_s, steps) - end for end in best]
             first, last = float(test.time[0]), float(test.time[-1])
-            new = [(best[0] + d * moves[0], best[1] + d * moves[1]) for d in steps[moves[0] == 0]]
+            new = [(best[0] + d * moves[0], best[1] + d * moves[1]) for d in around[moves[0] == 0]]
             best = min([best, *(x for x in new if first <= x[0] and x[1] <= last)], key=misfit_of)
         reach_s = next_reach(reach_s)
     return best
@@ -581,7 +581,7 @@ def further_spans(network: Network, test: Test, values: Values, effect: During, 
             of = misfits(finer_blocks(test, best, reach_s))
             return lambda span: of([*spans, span]) if _alike(span, lengths, step) else float("inf")
 
-        best = closest_span(test, best, reach, closer)
+        best = closest_span(test, best, reach, closer, 1.0)
         misfit = misfits(finer_blocks(test, best, step))
         if not misfit(spans) - misfit([*spans, best]) > price:
             return spans[first_new:]
@@ -617,7 +617,7 @@ def _first_spans(
             if _alike((a, b), [usual], spacing) and all(b <= c or d <= a for c, d in disjoint):
                 disjoint.append((a, b))
         best += disjoint[:FIRST_RUNS]
-    return spacing, best
+    return max(spacing, LENGTHS * usual), best
 
 
 def _promised_gains(

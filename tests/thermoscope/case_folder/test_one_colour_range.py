@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import viz
-from extras.workbench import revisions, steps
+from extras.workbench import appearance, steps
 from lumped.build import pipeline
 from lumped.condensation.reduction import Recipe
 from thermoscope.case_folder import runs
@@ -59,7 +59,7 @@ def test_a_step_of_the_model_begins_with_the_colours_of_the_model_before(folder,
     monkeypatch.setenv("THERMOSCOPE_CACHE", str(tmp_path / "cache"))
     nodes, parameter = viz.split(folder.built.mesh), folder.case.model.network.parameters[0]
     first, second = (Revision(n, "calibrate", values={parameter.name: n * parameter.value}) for n in (1, 2))
-    before, now = (revisions.at(folder, History(of)) for of in ((first,), (first, second)))
+    before, now = (appearance.at(folder, History(of)) for of in ((first,), (first, second)))
     assert stored_range(now) is None
     expected = temperature_range(before, nodes)
     assert stored_range(now) == stored_range(before) == expected
