@@ -304,13 +304,15 @@ def retimed(
         i for i in refits if i not in likely and hypotheses[i].log_bayes > least and _is_once(evidence, hypotheses[i])
     ]
     few = [hypotheses[i] for i in [*likely, *near[:RIVALS]][:FITTED]]
-    fits, sizes = dict[int, Fit](), dict[int, float]()
+    fits, sizes, before = dict[int, Fit](), dict[int, float](), set[str]()
     for _ in range(MOVES):
         earlier, fits = fits, fits_of_events(evidence, few)
         due = {k: fit for k, fit in fits.items() if fit is not earlier.get(k)}  # about the same fit none moves again
         far = {k: size for k, fit in due.items() if is_far(size := fit.values[evidence.names[k]], sizes.get(k, 0.0))}
         sizes |= far
+        before |= {evidence.names[k] for k in due}
         new = moved_events(evidence, due, {k: reach_s for k in far})
+        new = {k: e for k, e in new.items() if e.name not in before}  # along a ridge ends go to and fro
         if not new:
             break
         priors: dict[Effect, float] = {e: evidence.causes[k].log_prior for k, e in new.items()}

@@ -20,7 +20,7 @@ def verdict(diagnosis: Document | None, comparison: Document | None) -> tuple[st
     off = " ".join(r["words"] for r in diagnosis.get("remainder", [])[:1])
     if code == "adequate" and not off and (places := _off_places(comparison)):
         return "warn", f"Nothing is found missing from the model, yet it is off at {spoken(places)}."
-    said = f"{diagnosis.get('words', '')[:1].upper()}{diagnosis.get('words', '')[1:]}."
+    answer = f"{diagnosis.get('words', '')[:1].upper()}{diagnosis.get('words', '')[1:]}."
     contradicted = any(c.get("contradicts") for c in diagnosis.get("checks", []))
     sentences = {
         "adequate": f"Nothing with a name is missing from the model. {off}"
@@ -31,7 +31,7 @@ def verdict(diagnosis: Document | None, comparison: Document | None) -> tuple[st
         if len(names) > 1
         else f"Perhaps missing from the model: {spoken(names)}. These tests cannot tell.",
         "several": f"Missing from the model: {spoken(names)}.",
-        "outside": said
+        "outside": answer
         if contradicted
         else f"Heat is missing or in excess{_where(diagnosis)}; no known effect explains it.",
         "absorbed": "A calibrated value lies far from what is physically expected; it may hide a missing effect.",

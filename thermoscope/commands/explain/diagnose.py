@@ -42,7 +42,7 @@ def diagnose(case: Case, target: Json = None, without: Without = None, only: Onl
             _stopped(folder, so_far, case)
             raise
         if not quick and document["named"] and document["odds"][0]["probability"] < SURE:
-            document["tried"] = _tried(folder, _proposed(document, document["named"][0]), tell)
+            document["tried"] = _trial(folder, _proposed(document, document["named"][0]), tell)
     give(document, target, lambda: diagnosis_summary(document, case))
     return 0 if diagnosis.verdict in ("named", "group", "several") else 1
 
@@ -117,7 +117,7 @@ def diagnosed(
     return diagnosis, document
 
 
-def _tried(folder: Folder, effects: Sequence[str], tell: Progress) -> dict[str, Any]:
+def _trial(folder: Folder, effects: Sequence[str], tell: Progress) -> dict[str, Any]:
     """What `add` would say of effects that are not sure: nothing is proposed that it refuses."""
     from validation.revision.revise import add
 
@@ -139,16 +139,16 @@ def diagnosis_summary(document: Mapping[str, Any], called: str) -> Summary:
     """The verdict; of a wrong base only that, for it comes first.  called : what the user calls the case"""
     plain = document["verdict"] == "adequate" and not document["revision"]  # never calibrated
     unfitted = "That is of the model calibrated to these tests, not as it stands" if plain else ""
-    said = sentences([*filter(None, (document["words"], unfitted, document.get("strained")))])
-    sentence, case = " ".join(said), quote(called)
+    clauses = sentences([*filter(None, (document["words"], unfitted, document.get("strained")))])
+    sentence, case = " ".join(clauses), quote(called)
     bases, steps, budgets = (document.get(key, []) for key in ("bases", "sampling", "error_budget"))
     if any(h["declared"] and h["excluded"] for h in bases):
         return Summary(sentence, [tables.bases_table(bases)], f"--json FILE; thermoscope bench bases {case}")
     effects, candidates = document.get("named", []), document["candidates"]
     step = f"model calibrate {case}" if plain else f"explain effects {case}"
-    tried = document.get("tried", {"accepted": True})
-    step = f"model add {case} {join(_proposed(document, effects[0]))}" if effects and tried["accepted"] else step
-    refused = "" if tried["accepted"] else f"Not proposed, since model add would not accept it: {tried['why']}."
+    trial = document.get("tried", {"accepted": True})
+    step = f"model add {case} {join(_proposed(document, effects[0]))}" if effects and trial["accepted"] else step
+    refused = "" if trial["accepted"] else f"Not proposed, since model add would not accept it: {trial['why']}."
     hidden = [
         f"{h['words']} {f'below {limit(h)}' if isfinite(h['smallest_detectable'] or inf) else 'at any size'}"
         for h in document["cannot_see"]

@@ -132,7 +132,12 @@ def improvement_summary(document: Mapping[str, Any], folder: Folder, called: str
         )
     yard, why = document.get("yardstick", {"sentence": "", "warning": ""}), document["why"]
     plain = f"{yard['sentence']} {lacking_words(document)}" if yard["sentence"] else ""
-    said = [yard["warning"], document.get("found", ""), f"{why[:1].upper()}{why[1:]}; {outcome}.", document["strained"]]
-    sentence = " ".join(filter(None, said))
+    clauses = [
+        yard["warning"],
+        document.get("found", ""),
+        f"{why[:1].upper()}{why[1:]}; {outcome}.",
+        document["strained"],
+    ]
+    sentence = " ".join(filter(None, clauses))
     refusals = Table.of("Tried and refused", document["refused"], "*what | *reason=why")
     return Summary(sentence, [errors, plain, refusals, *further], more)
