@@ -85,15 +85,20 @@ def _top(r: Report) -> str:
     since = "" if diagnosis is None else sentence
     if r.finding:
         tone, sentence = "good" if r.finding.startswith("Found") else "info", r.finding.replace("->", "→")
+    compared: Document = r.comparison or {}
+    plain: Document = compared.get("yardstick", {})
+    if plain.get("warning"):  # what no model at all does better comes first
+        tone, sentence = "warn", f"{plain['warning']} {sentence}"
     head = f"<h1>thermoscope show report: {escape(r.case)}</h1>"
     head += f'<p class="verdict"><span class="{tone}">{escape(sentence)}</span></p>'
     items = []
     if r.comparison is not None:
         items.append((f"{r.comparison['rmse_K']:.2f} K", "rms error over all tests, model as it stands"))
         items.append((f"{r.comparison['floor_K']:.2f} K", "what the sensors' own uncertainty explains"))
-        if plain := best_plain_K(r.comparison):
-            items.append((f"{plain:.2f} K", "the best plain model, which knows no machine, on tests it never saw"))
-    below = html.text(since * bool(r.finding), words.detail(diagnosis), r.description)
+        if best := best_plain_K(r.comparison):
+            items.append((f"{best:.2f} K", "the best plain model, which knows no machine, on tests it never saw"))
+    told = compared.get("strained", ""), plain.get("sentence", "")
+    below = html.text(since * bool(r.finding), words.detail(diagnosis), *told, r.description)
     return head + below + (html.cards(items) if items else "")
 
 

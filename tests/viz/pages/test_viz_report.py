@@ -173,6 +173,14 @@ def test_every_verdict_has_its_words(code, word):
     assert word in verdict({**diagnose, "verdict": code}, compare)[1]
 
 
+def test_a_model_worse_than_no_model_is_told_first_and_what_the_fit_moved_beside_it():
+    compare = documents()[0]
+    plain = {"warning": "Worse than no model.", "sentence": "Held out 9 K; no model at all 3 K.", "best_K": 3.0}
+    page = render(Report("own", comparison={**compare, "yardstick": plain, "strained": "The fit moved much."}))
+    assert page.index("Worse than no model.") < page.index("The fit moved much.") < page.index("Held out 9 K;")
+    assert "Worse than" not in render(Report("own", comparison=compare))
+
+
 def test_what_contradicts_the_verdict_is_what_the_report_says():
     compare, diagnose = documents()
     check = {"check": "tests", "passed": False, "contradicts": True}

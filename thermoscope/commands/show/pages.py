@@ -59,10 +59,12 @@ def write_page(
     """Write into/report.html with its pictures, drawn anew or those given; `case` is what commands call the case."""
     from thermoscope.case_folder.stored_comparison import yardstick_document
     from validation.comparison.error_budget import documents
+    from validation.parameters.unknowns import strain_words
     from viz.pages.report import Report, write_report
 
     tell("running the model and its error budget")
-    compared = {**folder.compared.document(), **yardstick_document(folder.yardstick, folder.compared, folder.case)}
+    plain = yardstick_document(folder.yardstick, folder.compared, folder.case)
+    compared = {**folder.compared.document(), **plain, "strained": strain_words(folder.case)}
     diagnosis, earlier = _diagnosis(folder)
     curves = [marked(runs.comparison_of(folder, test), diagnosis) for test in runs.by_interest(folder)]
     tell("drawing")
