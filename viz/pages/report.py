@@ -97,8 +97,8 @@ def _top(r: Report) -> str:
         items.append((f"{r.comparison['floor_K']:.2f} K", "what the sensors' own uncertainty explains"))
         if best := best_plain_K(r.comparison):
             items.append((f"{best:.2f} K", "the best plain model, which knows no machine, on tests it never saw"))
-    told = compared.get("strained", ""), plain.get("sentence", "")
-    below = html.text(since * bool(r.finding), words.detail(diagnosis), *told, r.description)
+    sentences = compared.get("strained", ""), plain.get("sentence", "")
+    below = html.text(since * bool(r.finding), words.detail(diagnosis), *sentences, r.description)
     return head + below + (html.cards(items) if items else "")
 
 
