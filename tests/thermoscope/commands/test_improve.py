@@ -38,7 +38,10 @@ def test_it_ends_adequate(improved):
 def test_its_end_says_how_near_the_best_plain_model_is_here_and_in_the_report(improved):
     _, document, case = improved
     assert document["why"].endswith(f" {document['plain_left_out_K']:.2f} K")
-    assert f"each test predicted from the others: this model {document['left_out_K']:.2f} K, " in document["why"]
+    fitted = (
+        f"as fitted this model leaves {document['left_out_K']:.2f} K; "  # one test: nothing was left out of its fit
+    )
+    assert fitted in document["why"]
     assert document["left_out_K"] < 1.1 * document["plain_left_out_K"]
     ended = json.loads((case / "out" / "diagnosis.json").read_text())
     assert document["why"][1:] in ending(ended)
