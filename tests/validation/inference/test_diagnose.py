@@ -188,7 +188,7 @@ def test_a_frozen_channel_is_told_and_accuses_nothing_else():
     found = diagnose(broken, plan=False)
     assert found.verdict == "data"
     assert found.groups == ()
-    assert found.odds[0].name == f"frozen@{name}"
+    assert found.odds[0].hypothesis == f"frozen@{name}"
     assert found.odds[0].effects == ()
     assert "no evidence of a missing effect" in found.words
 
@@ -198,6 +198,6 @@ def test_what_is_missing_is_found_beside_a_frozen_channel():
     found = diagnose(broken, plan=False)
     assert found.verdict == "data"
     assert found.named == ("convection@flange.right",)
-    assert found.odds[0].name == f"frozen@{name} + convection@flange.right"
+    assert found.odds[0].hypothesis == f"frozen@{name} + convection@flange.right"
     assert found.odds[0].effects == ("convection@flange.right",)
     assert f"{name} in" in found.words
