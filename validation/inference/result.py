@@ -124,6 +124,7 @@ class Odds(TableRow):
 
     log_evidence : over that of nothing (nats), None for "others"
     tests : those a condition held in;  begin_s, end_s : when, if it held once and for a while
+    faults : those of the effects that are sure whatever else is, such as a frozen sensor
     """
 
     hypothesis: str
@@ -133,6 +134,12 @@ class Odds(TableRow):
     tests: tuple[str, ...] = ()
     begin_s: float | None = None
     end_s: float | None = None
+    faults: tuple[str, ...] = ()
+
+    @property
+    def causes(self) -> tuple[str, ...]:
+        """The effects without plain faults of sensors, which no model could have."""
+        return tuple(name for name in self.effects if name not in self.faults)
 
 
 @dataclass(frozen=True)

@@ -118,7 +118,7 @@ def _odds(e: Evidence, h: Weighed, p: float, sure: tuple[str, ...]) -> Odds:
     tests = tuple(dict.fromkeys(t for x in conditions for t in x.tests))
     spans = [s for x in conditions if x.event for s in x.event.every]
     begin, end = spans[0] if len(spans) == 1 else (None, None)
-    return Odds(name, names, p, h.nats, tests, begin, end)  # a plain fault is no effect that a model could have
+    return Odds(name, (*sure, *names), p, h.nats, tests, begin, end, sure)
 
 
 def explanations(posterior: Posterior) -> tuple[Explanation, ...]:

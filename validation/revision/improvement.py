@@ -141,7 +141,7 @@ def singletons(diagnosis: Diagnosis, choice: Sequence[Candidate]) -> str | None:
     Halves of the instants may say that more is missing beside it: that is no doubt of what is sure.
     """
     first = effect(choice[0].effect)
-    odds = sum(o.probability for o in diagnosis.odds if any(is_same_event(effect(e), first) for e in o.effects))
+    odds = sum(o.probability for o in diagnosis.odds if any(is_same_event(effect(e), first) for e in o.causes))
     alone = len(choice) == 1 and diagnosis.verdict in ("named", "several") and odds > 0.5  # beside unknown heat, too
     return first.name if (odds >= SURE or alone) and _unasked(first.name) else None
 
@@ -288,8 +288,8 @@ def further_step(
     best, free = min(yard.left_out.values()), yard.left_out["free_network"]
     trials, before = list[Trial](), {frozenset(r.effects) for r in refused}
     if best * WORTH < left_out:
-        likely = [o for o in diagnosis.odds if o.effects and all(map(_unasked, o.effects))][:LIKELY]
-        trials += [(o.effects, {"probability": o.probability, "verdict": diagnosis.verdict}) for o in likely]
+        likely = [o for o in diagnosis.odds if o.causes and all(map(_unasked, o.causes))][:LIKELY]
+        trials += [(o.causes, {"probability": o.probability, "verdict": diagnosis.verdict}) for o in likely]
     if free < WORTH * left_out:
         every = suggested_effects(yard.terms, case)
         alone = [(s,) for s in every if s.effects] if free * WORTH < left_out else []
@@ -353,14 +353,14 @@ def sure_set(diagnosis: Diagnosis, name: str, supervisor: Supervisor) -> tuple[s
     """
     if not supervisor.suggest or not diagnosis.odds or diagnosis.odds[0].probability < SURE:
         return ()
-    likeliest = diagnosis.odds[0].effects
+    likeliest = diagnosis.odds[0].causes
     return likeliest if name in likeliest and all(one == name or _unasked(one) for one in likeliest) else ()
 
 
 def needed_together(diagnosis: Diagnosis, name: str) -> tuple[str, ...]:
     """The most probable set of effects that this one is in with others; () where there is none."""
-    sets = [o for o in diagnosis.odds if len(o.effects) > 1 and name in o.effects]
-    return max(sets, key=lambda o: o.probability).effects if sets else ()
+    sets = [o for o in diagnosis.odds if len(o.causes) > 1 and name in o.causes]
+    return max(sets, key=lambda o: o.probability).causes if sets else ()
 
 
 def evidence(diagnosis: Diagnosis, candidate: Candidate) -> dict[str, float | str]:

@@ -189,7 +189,7 @@ def test_a_frozen_channel_is_told_and_accuses_nothing_else():
     assert found.verdict == "data"
     assert found.groups == ()
     assert found.odds[0].hypothesis == f"frozen@{name}"
-    assert found.odds[0].effects == ()
+    assert (found.odds[0].effects, found.odds[0].causes) == ((f"frozen@{name}",), ())
     assert "no evidence of a missing effect" in found.words
 
 
@@ -199,5 +199,6 @@ def test_what_is_missing_is_found_beside_a_frozen_channel():
     assert found.verdict == "data"
     assert found.named == ("convection@flange.right",)
     assert found.odds[0].hypothesis == f"frozen@{name} + convection@flange.right"
-    assert found.odds[0].effects == ("convection@flange.right",)
+    assert found.odds[0].effects == (f"frozen@{name}", "convection@flange.right")
+    assert found.odds[0].causes == ("convection@flange.right",)
     assert f"{name} in" in found.words

@@ -131,8 +131,9 @@ def _trial(folder: Folder, effects: Sequence[str], tell: Progress) -> dict[str, 
 
 def _proposed(document: Mapping[str, Any], first: str) -> list[str]:
     """What to add: the effect that is named first, or the set that it is in where that is the likeliest of all."""
-    likeliest = document["odds"][0]["effects"] if document.get("odds") else []
-    return list(likeliest) if first in likeliest else [first]
+    odds = document["odds"][0] if document.get("odds") else {"effects": []}
+    likeliest = [name for name in odds["effects"] if name not in odds.get("faults", ())]
+    return likeliest if first in likeliest else [first]
 
 
 def diagnosis_summary(document: Mapping[str, Any], called: str) -> Summary:
