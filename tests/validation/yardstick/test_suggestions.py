@@ -151,10 +151,10 @@ def test_where_no_name_was_added_the_likeliest_sets_are_tried_and_the_criterion_
     """No name was given, or two that cannot be told apart and nobody to ask."""
     poorer = without(case, ("body", "ambient"))
     odds = [
-        SimpleNamespace(effects=(n,), probability=p) for n, p in (("mass@core", 0.6), ("convection.constant@body", 0.3))
+        SimpleNamespace(causes=(n,), probability=p) for n, p in (("mass@core", 0.6), ("convection.constant@body", 0.3))
     ]
-    sensor = SimpleNamespace(effects=("sensor.gain@T_body",), probability=0.05)  # asked for, whatever it predicts
-    odds = (SimpleNamespace(effects=(), probability=0.1), sensor, *odds)
+    sensor = SimpleNamespace(causes=("sensor.gain@T_body",), probability=0.05)  # asked for, whatever it predicts
+    odds = (SimpleNamespace(causes=(), probability=0.1), sensor, *odds)
     said = SimpleNamespace(groups=groups, odds=odds, verdict="outside")
     refused = []
     step, evidence = further_step(poorer, Supervisor(singletons, suggest=True), said, 9.0, refused, no_progress)
@@ -168,7 +168,7 @@ def test_a_lasting_fault_that_is_left_hides_nothing_after_it_where_nobody_is_ask
     poorer = without(case, ("body", "ambient"))
     names = ("sensor.gain@T_body", "convection.constant@body")
     rows = tuple(Candidate(n, 9.0, 3.0, 1.0, "1", (0.5, 1.5), "named", probability=0.99) for n in names)
-    odds = (SimpleNamespace(effects=names, probability=0.99),)
+    odds = (SimpleNamespace(causes=names, probability=0.99),)
     said = Said(((names[0],), (names[1],)), odds, "several", names, rows, "two are missing")
     step, _, why = _added(poorer, Supervisor(singletons, suggest=suggest), said, 0.0, [], no_progress)
     assert (step and step.effect, bool(why)) == (name, name is None)
@@ -179,7 +179,7 @@ def test_a_set_that_is_sure_is_added_whole_where_nobody_is_asked(case, suggest, 
     poorer = without(case, ("body", "ambient"), ("core", "body"))
     names = ("coupling@body|core", "convection.constant@body")
     rows = tuple(Candidate(n, 9.0, 3.0, 1.0, "1", (0.5, 1.5), "named", probability=0.99) for n in names)
-    odds = (SimpleNamespace(effects=names, probability=0.99),)
+    odds = (SimpleNamespace(causes=names, probability=0.99),)
     said = Said(((names[0],), (names[1],)), odds, "several", names, rows, "two are missing")
     ask = Supervisor(lambda _, choice: choice[0].effect, suggest=suggest)
     step, _, why = _added(poorer, ask, said, 0.0, [], no_progress)
@@ -188,7 +188,7 @@ def test_a_set_that_is_sure_is_added_whole_where_nobody_is_asked(case, suggest, 
 
 def test_what_did_not_predict_is_not_tried_again(case):
     poorer = without(case, ("body", "ambient"))
-    odds = (SimpleNamespace(effects=("mass@core",), probability=0.6),)
+    odds = (SimpleNamespace(causes=("mass@core",), probability=0.6),)
     said = SimpleNamespace(groups=(), odds=odds, verdict="outside")
     refused = [Refusal(("mass@core",), "more heat capacity", "it was worse")]
     further_step(poorer, Supervisor(singletons, suggest=True), said, 9.0, refused, no_progress)
@@ -198,11 +198,11 @@ def test_what_did_not_predict_is_not_tried_again(case):
 def test_what_was_tried_last_is_a_table_and_one_clause_of_the_sentence(case):
     """A supervisor that offers nothing: what a free network has is tried, and does not predict better than a guess."""
     poorer = without(case, ("body", "ambient"))
-    odds = [SimpleNamespace(effects=(f"{kind}@core",), probability=0.2) for kind in ("mass", "loss.constant")]
+    odds = [SimpleNamespace(causes=(f"{kind}@core",), probability=0.2) for kind in ("mass", "loss.constant")]
     said = SimpleNamespace(groups=(), odds=tuple(odds), verdict="outside")
     refused = []
     further_step(poorer, Supervisor(singletons, suggest=True), said, 9.0, refused, no_progress)
-    assert [r.what for r in refused] == [effect(o.effects[0]).statement for o in odds][: len(refused)]
+    assert [r.what for r in refused] == [effect(o.causes[0]).statement for o in odds][: len(refused)]
     assert all(str(r) == f"not accepted: {r.what}, as {r.why}" for r in refused)
     assert refused
 
@@ -211,7 +211,7 @@ def test_the_sentence_counts_what_the_table_of_refusals_lists(case, monkeypatch)
     poorer, refused = without(case, ("body", "ambient")), list[Refusal]()
     refusal = SimpleNamespace(accepted=False, effect=None, checks=(), why="it predicts no better")
     monkeypatch.setattr("validation.revision.improvement.add", lambda *anything: refusal)
-    odds = [SimpleNamespace(effects=(f"{kind}@core",), probability=0.2) for kind in ("mass", "loss.constant")]
+    odds = [SimpleNamespace(causes=(f"{kind}@core",), probability=0.2) for kind in ("mass", "loss.constant")]
     said = Said((), odds, "outside", (), (), "nothing explains it")
     step, _, why = _added(poorer, Supervisor(singletons, suggest=True), said, 9.0, refused, no_progress)
     assert step is None
@@ -230,7 +230,7 @@ def test_what_makes_the_model_run_away_is_refused_and_the_next_is_tried(case, mo
     monkeypatch.setattr(improvement, "add", add)
     each = (("mass@core", 0.6), ("convection.constant@body", 0.3))
     said = SimpleNamespace(
-        groups=(), odds=tuple(SimpleNamespace(effects=(n,), probability=p) for n, p in each), verdict="outside"
+        groups=(), odds=tuple(SimpleNamespace(causes=(n,), probability=p) for n, p in each), verdict="outside"
     )
     refused = []
     step, _ = further_step(poorer, Supervisor(singletons, suggest=True), said, 9.0, refused, no_progress)
