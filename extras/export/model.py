@@ -84,11 +84,13 @@ class Model:
 
 def exported(folder: th.Folder, limits: Mapping[str, float]) -> Model:
     """The model of a case as it stands. Raises InputError for a law that has no form outside this tool."""
-    network, values = th.model_of(folder)
-    model = packed(network, values, th.standing_reference(folder.case), outputs(network, folder, limits))
+    (network, values), reference = th.model_of(folder), th.standing_reference(folder.case)
+    model = packed(network, values, reference, outputs(network, folder, limits))
     effects = tuple(e.name for e in folder.case.model.effects)
-    fitted, first = folder.case.model.values, th.standing_reference(folder.case).tests[:1]
-    start = {n: fitted[name] for n in model.states for t in first if (name := th.start_name(n, t)) in fitted}
+    fitted = folder.case.model.values
+    start = {
+        n: fitted[name] for n in model.states for t in reference.tests[:1] if (name := th.start_name(n, t)) in fitted
+    }
     return replace(model, name=folder.case.name, revision=folder.case.model.revision, effects=effects, start_K=start)
 
 

@@ -18,7 +18,7 @@ from geom.arrays import Array
 from geom.one_thread import one_blas_thread
 from lumped.model.network import Network
 from lumped.model.once import once
-from measured.case import Case, Test
+from measured.case import Case
 from measured.sensors.faults import broken_channels, without
 from validation.yardstick.black_box import BlackBoxLessons
 from validation.yardstick.free_network import Form, FreeNetwork, NetworkLessons, Shape
@@ -124,7 +124,7 @@ def yardstick(case: Case) -> Yardstick | None:
     same = alone and (alone[1].inputs, alone[1].boundaries, *alone[1].steady) == every
     step = row_step(case.usable, columns)
     records = [r for fold in folds for r in fold]
-    unseen = [table_record(t, columns, step) for t in _sound(case.tests) if t.role == "hold-out"]
+    unseen = [table_record(t, columns, step) for t in _sound(case).tests if t.role == "hold-out"]
     unseen = [r for r in unseen if r.read.any()]  # one of other sensors says nothing about these
     which = {
         "persistence": _best(_persistences(folds, columns), folds),
@@ -152,8 +152,8 @@ def yardstick(case: Case) -> Yardstick | None:
 
 def folds_of(case: Case) -> tuple[Folds, Columns] | None:
     """The tests a fit may use as tables, what is left out at a time; None where nothing can be learnt from them."""
-    tests = _sound(case.usable)
-    columns = table_columns(tests, _sound(case.tests))
+    sound = _sound(case)
+    tests, columns = sound.usable, table_columns(sound.usable, sound.tests)
     if not columns.sensors:
         return None
     step = row_step(tests, columns)
@@ -163,9 +163,10 @@ def folds_of(case: Case) -> tuple[Folds, Columns] | None:
     return _folds(records), columns
 
 
-def _sound(tests: Sequence[Test]) -> tuple[Test, ...]:
-    """The tests without readings that mean nothing: a model is not judged by these either."""
-    return without(tests, broken_channels(tests))
+@once_for_tests
+def _sound(case: Case) -> Case:
+    """The case without readings that mean nothing: a model is not judged by these either."""
+    return replace(case, tests=without(case.tests, broken_channels(case.tests)))
 
 
 @once_for_tests
