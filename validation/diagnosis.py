@@ -161,11 +161,13 @@ def infer(
         return first_odds
     # the noise and the ends of events were set by tangents: once refits say them better, all is weighed anew
     progress("refitting the ends of what held for a while")
+    before = evidence.names
     update, noise = retimed(evidence, hypotheses, end_reach(scan), refit.fine_refit), refit.refit_noise(hypotheses)
     if noise is not None or update is not evidence:
         evidence = converged(recalibrated(update, noise or update.fit.noise))
         warm_fits = {h.members: h.fit for h in hypotheses if h.fit and h.members}
-        again = refit.weighty_refits(hypotheses)
+        moved = [(k,) for k, name in enumerate(evidence.names) if name != before[k]]
+        again = [*refit.weighty_refits(hypotheses), *moved]
         hypotheses, heat = weigh(case, evidence, scan, fit.noise, progress, warm_fits, again)
     every = refit.larger_sets(case, evidence, refit.fine_refits(evidence, hypotheses), progress)
     return decide.Posterior(evidence, tuple(relative_evidence(every)), tuple(heat), against)
