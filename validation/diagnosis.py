@@ -155,7 +155,8 @@ def infer(
     larger = joined(evidence, more, values)
     evidence = converged(sharpened(larger, range(first, first + len(selection))))
     hypotheses, heat = weigh(case, evidence, scan, fit.noise, progress)
-    first_odds = decide.Posterior(evidence, tuple(relative_evidence(hypotheses)), tuple(heat), against)
+    each = decide.united_events(evidence, relative_evidence(hypotheses))
+    first_odds = decide.Posterior(evidence, each, tuple(heat), against)
     report(first_odds)
     if quick:
         return first_odds
@@ -166,11 +167,11 @@ def infer(
     if noise is not None or update is not evidence:
         evidence = converged(recalibrated(update, noise or update.fit.noise))
         warm_fits = {h.members: h.fit for h in hypotheses if h.fit and h.members}
-        moved = [(k,) for k, name in enumerate(evidence.names) if name != before[k]]
-        again = [*refit.weighty_refits(hypotheses), *moved]
+        new_ends = [(k,) for k, name in enumerate(evidence.names) if name != before[k]]
+        again = [*refit.weighty_refits(hypotheses), *new_ends]
         hypotheses, heat = weigh(case, evidence, scan, fit.noise, progress, warm_fits, again)
     every = refit.larger_sets(case, evidence, refit.fine_refits(evidence, hypotheses), progress)
-    return decide.Posterior(evidence, tuple(relative_evidence(every)), tuple(heat), against)
+    return decide.Posterior(evidence, decide.united_events(evidence, relative_evidence(every)), tuple(heat), against)
 
 
 def weigh(

@@ -11,6 +11,7 @@ from dataclasses import dataclass, replace
 from types import MappingProxyType
 
 import numpy as np
+from scipy.special import logsumexp
 
 from geom.arrays import Array
 from measured.doubt import COSTS
@@ -21,7 +22,15 @@ from validation.effects.during import During
 from validation.effects.time_window import Event
 from validation.inference.contradiction import Contradiction
 from validation.inference.evidence import Evidence, continued, log_bayes
-from validation.inference.hypotheses import Weighed, best_first, inclusion, probabilities, singles_by_member
+from validation.inference.hypotheses import (
+    SHARPNESS,
+    Weighed,
+    best_first,
+    evidence_temper,
+    inclusion,
+    probabilities,
+    singles_by_member,
+)
 from validation.inference.missing_heat import MissingHeat
 from validation.inference.result import Check, Verdict
 
@@ -203,11 +212,8 @@ def signal_to_error(change: Mapping[str, Array | float], budget: Mapping[str, fl
 def steady_decision(posterior: Posterior, decision: Callable[[Posterior], Decision]) -> Decision:
     """The decision on all instants, with no more claimed than either half of them would, and nothing where half of
     them, on average of both, say that nothing is missing."""
-    choice = without_twins(posterior.evidence, decision(posterior), ())
-    claimed = [k for g in choice.groups for k in g]
-    halves = [
-        without_twins(posterior.evidence, decision(half_posterior(posterior, first)), claimed) for first in (0, 1)
-    ]
+    choice = decision(posterior)
+    halves = [decision(half_posterior(posterior, first)) for first in (0, 1)]
     other = tuple(d for d in halves if differs(choice, d))
     silent = tuple(d for d in other if d.verdict == "adequate")
     if silent and np.mean([1.0 - d.sure for d in halves]) > SILENT:
@@ -221,14 +227,24 @@ def steady_decision(posterior: Posterior, decision: Callable[[Posterior], Decisi
     return replace(choice, verdict=verdict, groups=groups, others=other)
 
 
-def without_twins(e: Evidence, decision: Decision, claimed: Sequence[int]) -> Decision:
-    """The decision in which one event with ends a little apart is one thing: the first of them, or what is claimed."""
-    same, whole = dict[int, int](), {t.name: Event.of({t.name: [(t.time[0], t.time[-1])]}) for t in e.tests}
-    for k in (*claimed, *(k for g in decision.groups for k in g)):
-        same[k] = next((j for j in same.values() if is_same_event(e.effects[j], e.effects[k], whole)), k)
-    groups = tuple(tuple(dict.fromkeys(same[k] for k in g)) for g in decision.groups)
-    alone = decision.verdict == "group" and len(groups[0]) == 1 < len(decision.groups[0]) and decision.lead >= SURE
-    return replace(decision, groups=groups, verdict="named" if alone else decision.verdict)
+def united_events(e: Evidence, hypotheses: Sequence[Weighed]) -> tuple[Weighed, ...]:
+    """The hypotheses in which one event is one cause: its most probable ends, repeats and variety of the effect stand
+    for all, with the probability of all."""
+    order, lead = best_first(hypotheses), dict[int, int]()
+    whole = {t.name: Event.of({t.name: [(t.time[0], t.time[-1])]}) for t in e.tests}
+    for k in dict.fromkeys(k for h in order for k in h.members if isinstance(e.effects[k], During)):
+        lead[k] = next((j for j in lead.values() if is_same_event(e.effects[j], e.effects[k], whole)), k)
+    alike: dict[tuple[str, frozenset[int]], list[Weighed]] = {}
+    for h in order:
+        alike.setdefault((h.heat, frozenset(lead.get(k, k) for k in h.members)), []).append(h)
+    share, out = evidence_temper(hypotheses), []
+    for (_, members), every in alike.items():
+        one = next((h for h in every if members == {*h.members}), None)
+        if one is not None:
+            weight = [SHARPNESS * (h.log_prior + h.nats / share) for h in every]
+            log_prior = float(logsumexp(weight)) / SHARPNESS - one.nats / share
+            out.append(replace(one, log_prior=log_prior))
+    return tuple(out)
 
 
 def is_same_event(one: Effect, other: Effect, whole: Mapping[str, Event] = NO_TESTS) -> bool:

@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
-from scipy.special import ndtri
+from scipy.special import logit, ndtri
 
 from geom.arrays import Array
 from geom.constants import NORMAL_95
@@ -49,6 +49,7 @@ from validation.parameters.unknowns import value_words
 Record = tuple[str, str]  # test and channel
 Pulls = Sequence[tuple[str, float, float]]
 ROWS, LEAST_ODDS = 20, 1e-4  # candidates in the table; odds below one in ten thousand are not listed
+CERTAIN = 1.0 - 1e-9  # probability beyond which odds are as good as certain
 LEAST_MEMBER = 0.02  # probability below which a member of a group is in the table, and not in the sentence
 CLAUSE = "; these tests and sensors cannot tell them apart"
 EVEN = 0.5  # probability from which that something is missing is more likely than not
@@ -157,15 +158,15 @@ def candidate_rows(
     e = posterior.evidence
     share = inclusion(posterior.hypotheses, len(e.effects))
     members = [k for g in choice.groups for k in g]
-    order = [*members, *(int(k) for k in np.argsort(-share, kind="stable") if k not in members)]
+    order = [*members, *(int(k) for k in np.argsort(-share, kind="stable") if k in single and k not in members)]
     size, limit = smallest_visible(e), thresholds(e)
     standard = Standard.create(case, posterior, single[members[0]].fit if members else e.fit)
     refits = [h for h in best_first(posterior.hypotheses) if h.fit]
     rows = []
     for k in order[:ROWS]:
         within = next((h.fit for h in refits if k in h.members), single[k].fit)
-        row = _row(e, single[k], within, standard, leads=k in members[:1])
-        row = replace(row, threshold=float(limit[k]), smallest_detectable=float(size[k]), probability=float(share[k]))
+        row = _row(e, single[k], within, standard, float(share[k]), leads=k in members[:1])
+        row = replace(row, threshold=float(limit[k]), smallest_detectable=float(size[k]))
         group = next((g for g in choice.groups if k in g), ())
         rows.append(replace(row, decision=_decided(row, group, verdict), confused_with=_others(e, k, group)))
     return tuple(rows)
@@ -207,7 +208,7 @@ class Standard:
         return cls(deviances(e, lead) if lead else {}, share, tests, hold_out_residuals(tests, e.fit))
 
 
-def _row(e: Evidence, h: Weighed, within: Fit | None, standard: Standard, leads: bool) -> Candidate:
+def _row(e: Evidence, h: Weighed, within: Fit | None, standard: Standard, probability: float, leads: bool) -> Candidate:
     """A candidate by itself; its size is that in the most probable hypothesis it is in (`within`)."""
     k, s, name = h.members[0], e.score, e.names[h.members[0]]
     effect, wide, spread = e.effects[k], float(np.sqrt(standard.temper)), law_scatter(e, k)
@@ -222,8 +223,9 @@ def _row(e: Evidence, h: Weighed, within: Fit | None, standard: Standard, leads:
         0.0,
         1.0 if exact else a,
         e.parameters[k].unit,
-        (1.0, 1.0) if exact else interval(a, wide * sd, spread),
+        (1.0, 1.0) if exact else interval(a, wide * sd, spread, probability),
         "no",
+        probability=probability,
         absorbed=float(s.absorbed[k]),
         twin=e.twins[k],
         title=effect.title,
@@ -245,13 +247,18 @@ def _row(e: Evidence, h: Weighed, within: Fit | None, standard: Standard, leads:
     )
 
 
-def interval(a: float, sd: float, scatter: float = 0.0) -> tuple[float, float]:
-    """Central 95 % of an amplitude.  sd : of the refit, widened by the root of the temper that divides log evidence
+def interval(a: float, sd: float, scatter: float = 0.0, probability: float = 0.5) -> tuple[float, float]:
+    """Central 95 % of an amplitude; of what is probably there the side of zero is as far off as its odds say.
 
+    sd : of the refit, widened by the root of the temper that divides log evidence
     scatter : share of itself (one sigma) by which its law is wrong: no single amplitude fits a film of another exponent
     """
     half = NORMAL_95 * float(np.hypot(sd, scatter * a))
-    return a - half, a + half
+    odds = float(logit(np.clip(probability, 0.5, CERTAIN)))
+    if half < abs(a) or odds == 0.0:
+        return a - half, a + half
+    inner = min(half, NORMAL_95 * abs(a) / float(np.sqrt(2.0 * odds)))  # of a normal law with these odds at zero
+    return (a - inner, a + half) if a > 0.0 else (a - half, a + inner)
 
 
 def law_scatter(e: Evidence, k: int) -> float:
@@ -313,7 +320,7 @@ def possible_events(posterior: Posterior) -> tuple[PossibleEvent, ...]:
     """
     e, every, single = posterior.evidence, posterior.hypotheses, posterior.single
     share = inclusion(every, len(e.effects))
-    event_of = {k: x.event for k, x in enumerate(e.effects) if isinstance(x, During) and x.event}
+    event_of = {k: x.event for k, x in enumerate(e.effects) if k in single and isinstance(x, During) and x.event}
     groups: list[list[int]] = []
     for k in sorted(event_of, key=lambda k: (-share[k], -single[k].log_bayes)):
         alike = (g for g in groups if event_of[g[0]].overlap(event_of[k]) >= ALIKE)

@@ -18,7 +18,7 @@ from validation.diagnosis import diagnose
 from validation.effects import effect
 from validation.effects.during import During
 from validation.effects.sensors.reading_fault import SensorDelay
-from validation.inference.decide import SURE, is_same_event
+from validation.inference.decide import SURE
 from validation.inference.result import Candidate, Diagnosis
 from validation.parameters.unknowns import with_model
 from validation.revision.revise import TOGETHER, TRAINING, Revision, add, calibrate
@@ -140,10 +140,10 @@ def singletons(diagnosis: Diagnosis, choice: Sequence[Candidate]) -> str | None:
 
     Halves of the instants may say that more is missing beside it: that is no doubt of what is sure.
     """
-    first = effect(choice[0].effect)
-    odds = sum(o.probability for o in diagnosis.odds if any(is_same_event(effect(e), first) for e in o.causes))
-    alone = len(choice) == 1 and diagnosis.verdict in ("named", "several") and odds > 0.5  # beside unknown heat, too
-    return first.name if (odds >= SURE or alone) and _unasked(first.name) else None
+    first = choice[0]
+    alone = len(choice) == 1 and diagnosis.verdict in ("named", "several")
+    least = 0.5 if alone else SURE  # beside unknown heat, too
+    return first.effect if first.probability >= least and _unasked(first.effect) else None
 
 
 def _unasked(name: str) -> bool:

@@ -1,5 +1,7 @@
 """An interval of an amplitude holds what the refit leaves open and what the effect's own law gets wrong."""
 
+from math import log, sqrt
+
 import pytest
 
 from geom.constants import NORMAL_95
@@ -54,3 +56,13 @@ def test_films_and_losses_follow_correlations_and_conduction_does_not(kind, empi
 def test_a_size_that_no_material_has_is_told(kind, value, half, told):
     row = Candidate(f"{kind}@x", 50.0, 6.0, value, "1/K", (value - half, value + half), "named")
     assert bool(impossible_words(kinds()[kind]("x"), row)) is told
+
+
+def test_what_is_probably_there_is_no_nothing():
+    """A size that a wide law leaves at a third of itself from zero, and odds of twenty to one that it is there."""
+    low, high = interval(3.0, 3.0, probability=0.95)
+    assert low == pytest.approx(3.0 - 1.96 * 3.0 / sqrt(2.0 * log(19.0)), rel=1e-3)
+    assert 0.0 < low < 3.0
+    assert high == interval(3.0, 3.0)[1]
+    assert interval(-3.0, 3.0, probability=0.95) == (-high, -low)
+    assert interval(3.0, 3.0, probability=0.3) == interval(3.0, 3.0)

@@ -17,8 +17,8 @@ from validation.inference.decide import (
     decide,
     half_posterior,
     steady_decision,
+    united_events,
     united_groups,
-    without_twins,
 )
 from validation.inference.evidence import calibrated_case, scored, singles
 from validation.inference.hypotheses import Weighed, inclusion, probabilities
@@ -179,17 +179,21 @@ def test_one_event_with_ends_a_sample_apart_is_one_thing():
         for place, span in (("a", "100-300"), ("a", "120-300"), ("a", "3700-3900"), ("b", "100-300"))
     )
     e = SimpleNamespace(effects=(lid, late, other, fan), tests=())
-    assert without_twins(e, Decision("group", ((1, 0),), 1.0), [0]) == Decision("named", ((0,),), 1.0)
-    assert without_twins(e, Decision("group", ((0, 2, 3),), 1.0), ()) == Decision("group", ((0, 2, 3),), 1.0)
-    assert without_twins(e, Decision("group", ((0,),), 1.0), ()).verdict == "group"
-    assert without_twins(e, Decision("group", ((1, 0),), 1.0, lead=0.3), ()).verdict == "group", "heat is likelier"
+    every = [Weighed(members, log_bayes=b) for members, b in (((), 0.0), ((1,), 9.0), ((0,), 10.0), ((2,), 8.0))]
+    every += [Weighed((1, 3), log_bayes=9.5), Weighed((0, 3), log_bayes=9.4), Weighed((), "a")]
+    one = united_events(e, every)
+    assert [h.members for h in one] == [(0,), (0, 3), (2,), (), ()]
+    before, after = probabilities(every), dict(zip([(h.members, h.heat) for h in one], probabilities(one), strict=True))
+    assert np.isclose(after[(0,), ""], before[1] + before[2])
+    assert np.isclose(after[(0, 3), ""], before[4] + before[5])
+    assert np.isclose(after[(), "a"], before[6])
 
 
 def test_what_held_nearly_all_of_a_test_is_what_held_in_the_test():
     whole, most, half = (effect(f"blockage@a in b{span}") for span in ("", ":100-5900s", ":100-2900s"))
     e = SimpleNamespace(effects=(whole, most, half), tests=(SimpleNamespace(name="b", time=np.array([0.0, 6000.0])),))
-    assert without_twins(e, Decision("group", ((1, 0),), 1.0), ()) == Decision("named", ((1,),), 1.0)
-    assert without_twins(e, Decision("group", ((0, 2),), 1.0), ()).groups == ((0, 2),)
+    every = [Weighed(members, log_bayes=b) for members, b in (((), 0.0), ((1,), 9.0), ((0,), 8.0), ((2,), 7.0))]
+    assert [h.members for h in united_events(e, every)] == [(1,), (2,), ()]
 
 
 def test_heat_of_unknown_cause_that_is_more_probable_than_any_name_stands_first():
