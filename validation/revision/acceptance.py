@@ -8,7 +8,7 @@ Held-out tests have no say.
 
 from __future__ import annotations
 
-from collections.abc import Collection, Mapping, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass, replace
 from types import MappingProxyType
 
@@ -64,11 +64,11 @@ class Fold:
 class FoldPrediction:
     """How well a fold was predicted.
 
-    nats : log density of its readings;  square_K2s, seconds : their squared errors over the time that they stand for
-    no_change_K2s : the same where every sensor stays as it began
+    nats : noise -> log density of its readings;  square_K2s, seconds : their squared errors over the time that they
+    stand for;  no_change_K2s : the same where every sensor stays as it began
     """
 
-    nats: float
+    nats: Callable[[Noise], float]
     square_K2s: float
     no_change_K2s: float
     seconds: float
@@ -147,7 +147,7 @@ def fold_prediction(fit: Fit, fold: Fold, fixed: Mapping[str, float], effects: C
 
     fit : to all tests, model error in account;  fixed : values of what is not free;  effects : as of `reading_fit`
     """
-    learnt, unseen = _rows(fit, fold.fitted), _rows(fit, fold.predicted)
+    learnt = _rows(fit, fold.fitted)
     causes, machine, others = sorted_unknowns(fit.unknowns, effects)
     rows, parts = [fit.unknowns.names.index(name) for name in machine.names], [s for s, _ in learnt]
 
@@ -158,7 +158,11 @@ def fold_prediction(fit: Fit, fold: Fold, fixed: Mapping[str, float], effects: C
 
     values = dict(fixed)
     likely = fitted(fit.unknowns, fit.theta, fit.noise, parts)
-    nats = _log_density(fit, learnt, unseen, segments(fit.network, fold.predicted, {**values, **likely}))
+    there = segments(fit.network, fold.predicted, {**values, **likely})
+
+    def nats(noise: Noise) -> float:
+        return _log_density(replace(fit, noise=noise), _rows(fit, fold.fitted), _rows(fit, fold.predicted), there)
+
     values |= {name: likely[name] for name in causes.names} | dict.fromkeys(others.names, 0.0)
     values |= fitted(machine, fit.theta[rows], FOLLOWED.robust(parts), [replace(s, J=s.J[:, rows]) for s in parts])
     return FoldPrediction(nats, *squares(segments(fit.network, fold.predicted, values), fold))
@@ -212,6 +216,7 @@ def _log_density(
 def prediction_checks(
     before: Sequence[FoldPrediction],
     after: Sequence[FoldPrediction],
+    noises: Sequence[Noise],
     telling: Sequence[str],
     lone: Sequence[str] = (),
     aside: bool = False,
@@ -228,7 +233,7 @@ def prediction_checks(
     part = len(telling) == 1
     if not after:
         return (unseen_check(),)
-    nats = [b.nats - a.nats for b, a in zip(after, before, strict=True)]
+    nats = [log_density(b, noises) - log_density(a, noises) for b, a in zip(after, before, strict=True)]
     was, now = rms(before), rms(after)
     gain = -GAIN if aside else GAIN
     short = f" where {GAIN:.3g} would do" if 0.0 < sum(nats) <= gain else ""
@@ -243,6 +248,11 @@ def prediction_checks(
         Check("left out", sum(nats) > gain and now <= same * was, sum(nats), gain, words, part),
         Check("no change", error < none or not moving, now, none, beside, part),
     )
+
+
+def log_density(fold: FoldPrediction, noises: Sequence[Noise]) -> float:
+    """Log density of a fold's readings (nats), averaged over what their noise may be."""
+    return float(np.logaddexp.reduce([fold.nats(noise) for noise in noises]))
 
 
 def unseen_check() -> Check:

@@ -281,7 +281,7 @@ def _effect_checks(
     after = predicted(alike, new, parameter_values(fit.network, new.values), (*present, *names))
     # A sensor that always reads wrong makes what it read likelier by itself: what was left out has to fall as well.
     same = 1.0 if not aside and all(effect(name).fault for name in names) else SAME
-    checks = prediction_checks(predictions[at], after, telling, tuple(lone), aside, same)
+    checks = prediction_checks(predictions[at], after, (bare.noise, fit.noise), telling, tuple(lone), aside, same)
     shows = tuple(visible_check(fit, n) for n in names) if aside else ()
     return (*(bound_check(fit, n) for n in names), *shows, *checks, _lost(changes, tests))
 

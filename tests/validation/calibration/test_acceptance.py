@@ -62,19 +62,41 @@ def both(tests):
 def test_what_one_test_says_has_to_hold_in_the_other(loss, better):
     """30 % more loss in both tests, or 30 % more in one and 30 % less in the other; 25 K of rise, read to 0.3 K."""
     tests = [measured("one", loss=1.3), measured("two", loss=loss)]
-    before, after = ([fold_prediction(fit, f, {}) for f in folds(tests, ["one", "two"])] for fit in both(tests))
-    checks = prediction_checks(before, after, ["one", "two"])
+    fits = list(both(tests))
+    before, after = ([fold_prediction(fit, f, {}) for f in folds(tests, ["one", "two"])] for fit in fits)
+    noises = [fit.noise for fit in fits]
+    checks = prediction_checks(before, after, noises, ["one", "two"])
     assert checks[0].passed == better
     assert not any(c.partial for c in checks)
-    assert all(c.partial for c in prediction_checks(before, after, ["one"])), "a part of one test is no left-out error"
+    assert all(c.partial for c in prediction_checks(before, after, noises, ["one"])), (
+        "a part of one test is no left-out error"
+    )
+
+
+def density(nats):
+    """The log density of a fold, whatever its noise."""
+    return lambda noise: nats
 
 
 @pytest.mark.parametrize(("rise", "effect", "fault"), [(0.995, True, True), (1.005, True, False), (1.02, False, False)])
 def test_a_sensor_that_is_always_wrong_has_to_lower_the_error_and_physics_may_leave_it(rise, effect, fault):
     """What is likelier by 20 nats, and its error `rise` times the one before: 1 % shows in no two digits."""
-    was, now = ([FoldPrediction(nats, (k * 2.0) ** 2 * 3600, 1e6, 3600)] for nats, k in ((-50.0, 1.0), (-30.0, rise)))
-    assert prediction_checks(was, now, [])[0].passed == effect
-    assert prediction_checks(was, now, [], same=1.0)[0].passed == fault
+    was, now = (
+        [FoldPrediction(density(nats), (k * 2.0) ** 2 * 3600, 1e6, 3600)] for nats, k in ((-50.0, 1.0), (-30.0, rise))
+    )
+    assert prediction_checks(was, now, [FOLLOWED], [])[0].passed == effect
+    assert prediction_checks(was, now, [FOLLOWED], [], same=1.0)[0].passed == fault
+
+
+def test_a_step_is_not_held_against_the_noise_of_a_model_without_it_alone():
+    """Of two noises the readings may have either: one that is as large as what was missing hides it."""
+    large, small = FOLLOWED, replace(FOLLOWED, allow=0.5)
+    before = [FoldPrediction(lambda noise: -10.0 if noise is large else -500.0, 4e6, 1e7, 3600.0)]
+    after = [FoldPrediction(lambda noise: -9.5 if noise is large else -4.0, 1e4, 1e7, 3600.0)]
+    assert not prediction_checks(before, after, [large], ["one"])[0].passed
+    check = prediction_checks(before, after, [large, small], ["one"])[0]
+    assert check.passed
+    assert check.value == pytest.approx(6.0, abs=0.01)
 
 
 def test_a_test_left_out_is_predicted_by_a_fit_to_the_other():
@@ -92,7 +114,7 @@ def test_a_test_left_out_is_predicted_by_a_fit_to_the_other():
     (left,) = segments(fit.network, fold.predicted, follows.values)
     found = fold_prediction(fit, fold, {})
     assert found.square_K2s / found.seconds == pytest.approx(np.mean(left.r**2), rel=1e-3)
-    assert found.nats == pytest.approx(density, rel=1e-3, abs=0.05)
+    assert found.nats(fit.noise) == pytest.approx(density, rel=1e-3, abs=0.05)
 
 
 def test_of_the_only_test_that_tells_the_second_half_is_predicted():
@@ -138,10 +160,10 @@ def test_several_steady_states_are_left_out_in_turn_and_no_guess_of_no_change_is
     done = calibrate(Case("one", Model(one_node(LOSS)), tests))
     assert done.accepted, done.why
     assert [c.check for c in done.checks] == ["left out", "fitted"]
-    before, after = ([FoldPrediction(-nats, 900.0 * nats, 0.0, 3600.0)] * 2 for nats in (9.0, 1.0))
-    assert all(c.passed for c in prediction_checks(before, after, ["one", "two"]))
+    before, after = ([FoldPrediction(density(-n), 900.0 * n, 0.0, 3600.0)] * 2 for n in (9.0, 1.0))
+    assert all(c.passed for c in prediction_checks(before, after, [FOLLOWED], ["one", "two"]))
     moving = [after[0], replace(after[1], no_change_K2s=800.0)]
-    assert [c.passed for c in prediction_checks(before, moving, ["one", "two"])] == [True, False]
+    assert [c.passed for c in prediction_checks(before, moving, [FOLLOWED], ["one", "two"])] == [True, False]
 
 
 def test_a_calibration_that_only_its_own_test_gains_by_is_kept_for_that():
