@@ -93,7 +93,7 @@ def yardstick_document(yard: Yardstick | None, comparison: Comparison, case: Cas
     """What plain models leave beside a model, for a document; empty where the tests teach nothing."""
     if yard is None:
         return {}
-    words = {"sentence": sentence(yard, comparison), "warning": warning(yard, comparison)}
+    words = {"warning": warning(yard, comparison), "sentence": sentence(yard, comparison)}
     network = standing(case)
     of_file = {x.name for x in case.model.network.links}
     lacking = [
@@ -101,7 +101,7 @@ def yardstick_document(yard: Yardstick | None, comparison: Comparison, case: Cas
         for s in suggested_effects(yard.terms, case)
         if all(x.name in of_file for x in links_between(network, s.place, s.other))  # none was added
     ]
-    return {"yardstick": {**yard.document(), "model_K": model_error(yard, comparison), "lacking": lacking, **words}}
+    return {"yardstick": {**words, **yard.document(), "model_K": model_error(yard, comparison), "lacking": lacking}}
 
 
 def lacking_words(document: Mapping[str, Any]) -> str:

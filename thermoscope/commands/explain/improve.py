@@ -57,7 +57,7 @@ def improve(
     save_diagnosis(folder, json.loads(json.dumps(last, default=float)))
     errors = result.stairs[-1].comparison
     plain = yardstick_document(folder.yardstick, errors, result.case)
-    document = {"case": folder.case.name, **result.document(), "written": ledger.written, **plain}
+    document = {"case": folder.case.name, **plain, **result.document(), "written": ledger.written}
     document["strained"] = strain_words(result.case)
     if any(step["effect"] for step in document["stairs"]):
         document["found"] = finding_words(replace(folder, case=result.case, history=ledger.history), errors.document())
