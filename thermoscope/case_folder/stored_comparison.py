@@ -109,7 +109,9 @@ def lacking_words(document: Mapping[str, Any]) -> str:
     yard = document.get("yardstick", {})
     best = yard.get("free_network_K") or float("inf")
     each = [row["words"] for row in yard.get("lacking", [])][:FEW] if best < yard.get("model_K", 0.0) else []
-    return f"The free network has what the model lacks: {'; '.join(each)}." if each else ""
+    return (
+        f"The free network has what the model lacks (in brackets: a test left out): {'; '.join(each)}." if each else ""
+    )
 
 
 def stored_yardstick(case: Case) -> Yardstick | None:

@@ -189,10 +189,11 @@ class InputConductance(InputTerm):
         return with_parameter(network.extended(links=[link]), parameter)
 
 
-def law_sentence(subject: str, rest: float, most: float, unit: str, at: str, interval: Interval = NOTHING) -> str:
-    """ "stator to coolant: 56 W/K at rest, 112 at speed_rpm 4000 [100, 125]": a law of inputs, wherever it is told."""
-    sure = f" [{interval[0]:.3g}, {interval[1]:.3g}]" if interval[1] > interval[0] else ""
-    return f"{subject}: {rest:.3g} {unit} at rest, {most:.3g} at {at}{sure}"
+def law_sentence(subject: str, rest: float, most: float, unit: str, at: str = "", interval: Interval = NOTHING) -> str:
+    """ "stator to coolant: 56 W/K at rest, 112 at speed_rpm 4000 [100, 125]"; "body to room: 2 W/K [1.8, 2.3]" of what
+    follows no input: a law, wherever it is told."""
+    size = f"{rest:.3g} {unit} at rest, {most:.3g} at {at}" if at else f"{most:.3g} {unit}".removesuffix(" 1")
+    return f"{subject}: {size}" + (f" [{interval[0]:.3g}, {interval[1]:.3g}]" if interval[1] > interval[0] else "")
 
 
 def _width(a: float, ci95: Interval) -> Interval:
@@ -214,10 +215,16 @@ def _total(elements: Iterable[Link | Source], network: Network, values: Numbers,
         )
 
 
-def law_words(effects: Iterable[Effect], network: Network, values: Numbers, ci95: Mapping[str, Interval]) -> list[str]:
-    """What the terms that follow inputs came to in a fit, with their intervals, as they are told everywhere."""
-    return [
-        e.law_words(values[e.name], network, values, ci95.get(e.name, NOTHING))
-        for e in effects
-        if isinstance(e, InputTerm)
-    ]
+def law_words(
+    effects: Iterable[Effect], network: Network, values: Numbers, ci95: Mapping[str, Interval]
+) -> dict[str, str]:
+    """Effect -> what it came to in a fit, with its interval: the law of what follows inputs, of any other its size."""
+    units = {p.name: p.unit for p in network.parameters}
+    out = {}
+    for e in (e for e in effects if e.name in values):
+        a, interval = values[e.name], ci95.get(e.name, NOTHING)
+        if isinstance(e, InputTerm):
+            out[e.name] = e.law_words(a, network, values, interval)
+        else:
+            out[e.name] = law_sentence(e.statement, a, a, units[e.name], interval=interval)
+    return out

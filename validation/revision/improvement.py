@@ -71,6 +71,7 @@ class Step:
             "rmse_K": self.comparison.rmse_K,
             "fitted_rmse_K": self.comparison.fitted_rmse_K,
             "evidence": dict(self.evidence),
+            "laws": dict(self.revision.laws) if self.revision else {},
         }
 
 

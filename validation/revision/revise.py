@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from math import isfinite, sqrt
 
 import numpy as np
@@ -30,7 +30,7 @@ from validation.comparison.linearisation import segments
 from validation.comparison.reading_correction import corrected_tests
 from validation.effects import Effect, effect
 from validation.effects.during import During
-from validation.effects.input_terms import law_words
+from validation.effects.input_terms import InputTerm, law_words
 from validation.effects.time_window import checked, holds, lasts
 from validation.parameters.unknowns import FREE, case_reference, scene_of, standing, working
 from validation.revision.acceptance import (
@@ -87,7 +87,10 @@ class Change:
 
 @dataclass(frozen=True)
 class Revision(TableResult):
-    """What a revision did. accepted says whether the error fell where it should; the new model is given either way."""
+    """What a revision did. accepted says whether the error fell where it should; the new model is given either way.
+
+    laws : effect of the new model -> its law, or its size, with the interval, in words
+    """
 
     action: str
     effect: str | None
@@ -100,6 +103,7 @@ class Revision(TableResult):
     after: Comparison
     converged: bool
     checks: tuple[Check, ...] = ()
+    laws: Mapping[str, str] = field(default_factory=dict)
 
     @property
     def worth_keeping(self) -> bool:
@@ -142,6 +146,7 @@ class Revision(TableResult):
             "tests": [t.document() for t in self.tests],
             "parameters": [p.document() for p in self.parameters],
             "checks": [c.document() for c in self.checks],
+            "laws": dict(self.laws),
         }
 
 
@@ -248,9 +253,11 @@ def _revised(
     effects, ci95 = [effect(e.name) for e in new.effects], {p.name: p.ci95 for p in rows}
     new = replace(new, intervals={p.name: p.ci95 for p in rows})
     again = repeated_events(replace(case, model=new)) if action == "add" and accepted else ()
-    why = "; ".join([why, *(x.sentence for x in again), *law_words(effects, fits[-1].network, new.values, ci95)])
+    laws = law_words(effects, fits[-1].network, new.values, ci95)
+    forms = [laws[e.name] for e in effects if isinstance(e, InputTerm)]  # of others the table of values tells
+    why = "; ".join([why, *(x.sentence for x in again), *forms])
     converged = all(fit.converged for fit in fits)
-    return Revision(action, name, new, accepted, why, changes, tuple(rows), before, after, converged, acceptance)
+    return Revision(action, name, new, accepted, why, changes, tuple(rows), before, after, converged, acceptance, laws)
 
 
 def _effect_checks(

@@ -140,4 +140,5 @@ def improvement_summary(document: Mapping[str, Any], folder: Folder, called: str
     ]
     sentence = " ".join(filter(None, clauses))
     refusals = Table.of("Tried and refused", document["refused"], "*what | *reason=why")
-    return Summary(sentence, [errors, plain, refusals, *further], more)
+    laws = [f"As fitted: {words} (95 %)." for words in steps[-1]["laws"].values()]
+    return Summary(sentence, [errors, *laws, plain, refusals, *further], more)
