@@ -104,14 +104,13 @@ def yardstick_document(yard: Yardstick | None, comparison: Comparison, case: Cas
     return {"yardstick": {**words, **yard.document(), "model_K": model_error(yard, comparison), "lacking": lacking}}
 
 
-def lacking_words(document: Mapping[str, Any]) -> str:
-    """What a free network has and the model lacks, as a sentence; "" where nothing, or where it predicts no better."""
-    yard = document.get("yardstick", {})
+def yardstick_words(document: Mapping[str, Any]) -> str:
+    """What plain models leave, and what a free network has and the model lacks where it predicts better; "" of none."""
+    yard = document.get("yardstick", {"sentence": ""})
     best = yard.get("free_network_K") or float("inf")
     each = [row["words"] for row in yard.get("lacking", [])][:FEW] if best < yard.get("model_K", 0.0) else []
-    return (
-        f"The free network has what the model lacks (in brackets: a test left out): {'; '.join(each)}." if each else ""
-    )
+    lacking = f" The free network has what the model lacks (in brackets: a test left out): {'; '.join(each)}."
+    return str(yard["sentence"]) + lacking * bool(each)
 
 
 def stored_yardstick(case: Case) -> Yardstick | None:

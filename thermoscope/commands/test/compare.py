@@ -118,13 +118,12 @@ def comparison_summary(document: Mapping[str, Any], called: str, doubts: str = "
 
     called : what the user calls the case;  doubts : of its recordings, before the verdict
     """
-    from thermoscope.case_folder.stored_comparison import lacking_words
+    from thermoscope.case_folder.stored_comparison import yardstick_words
 
     tests, budgets, steps = document["tests"], document["error_budget"], document["sampling"]
-    plain = document.get("yardstick", {"warning": "", "sentence": ""})
     first, *rest = comparison_tables(document)
     parts = [
-        f"{plain['sentence']} {lacking_words(document)}".strip(),
+        yardstick_words(document),
         *(f"Again: {x['words']}." for x in document.get("repeated_events", ())),
         *(_reasons(document) if "patterns" in document else []),
         sensors_table("Over: error is measured - model", tests, "over"),
@@ -134,7 +133,8 @@ def comparison_summary(document: Mapping[str, Any], called: str, doubts: str = "
         roles_in_short(document["roles"]),
     ]
     more = f"--why, --json FILE; thermoscope show report {quote(called)}"
-    before, verdict = [plain["warning"], doubts], [document["words"], document.get("strained", "")]
+    worse = document.get("yardstick", {}).get("warning", "")
+    before, verdict = [worse, doubts], [document["words"], document.get("strained", "")]
     words = "\n".join(filter(None, (" ".join(filter(None, some)) for some in (before, verdict))))
     every = [*rest, *budget(budgets, steps), bands_table(document.get("bands", ()))]
     return Summary(words, parts, more, every)
