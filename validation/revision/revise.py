@@ -345,8 +345,8 @@ def _fit_checks(case: Case, fit: Fit, new: Model, changes: Sequence[Change]) -> 
     """Does a calibration lower the error of its own tests, leave others as well predicted as they were before, and
     predict none worse than a guess of no change does?
 
-    The others are the tests that a fit may use and this one did not, and each of its own left out in turn; before and
-    after are compared of those that the model as it stood had not seen either.
+    The others are the tests that a fit may use and this one did not, also where an effect was added on them; and each
+    of its own left out in turn, where the model as it stood had not seen it either.
     """
     previous = {t.name for t in case.fitted} if case.model.values else set()
     fitted = [t for t in case.usable if t.name in {s.test for s in fit.parts}]
@@ -362,7 +362,7 @@ def _fit_checks(case: Case, fit: Fit, new: Model, changes: Sequence[Change]) -> 
             seconds += span
     changed = [c for c in changes if c.role in TRAINING and isfinite(c.before)]
     mine = [c for c in changed if c.name in {t.name for t in fitted}]
-    unseen = [c for c in changed if c not in mine and c.name not in previous]
+    unseen = [c for c in changed if c not in mine]
     groups = {kind: some for kind, some in (("unseen", unseen), (FITTED, mine)) if some}
     pairs = {"left out": np.sqrt(square / seconds)} if seconds else {}
     pairs |= {k: np.array([mean_square(some, "before"), mean_square(some, "after")]) for k, some in groups.items()}
