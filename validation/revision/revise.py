@@ -250,10 +250,9 @@ def _revised(
         acceptance = _fit_checks(case, sure[-1], new, changes) if action == "calibrate" else ()
     accepted, why = judge(action, changes, fits, acceptance, {t.name for t in tests})
     rows = merged(sure, lambda fit: estimates(fit, _profiled(fit, tests, new, profiled, progress)))
-    effects, ci95 = [effect(e.name) for e in new.effects], {p.name: p.ci95 for p in rows}
-    new = replace(new, intervals={p.name: p.ci95 for p in rows})
+    new, effects = replace(new, intervals={p.name: p.ci95 for p in rows}), [effect(e.name) for e in new.effects]
     again = repeated_events(replace(case, model=new)) if action == "add" and accepted else ()
-    laws = law_words(effects, fits[-1].network, new.values, ci95)
+    laws = law_words(effects, fits[-1].network, new.values, new.intervals)
     forms = [laws[e.name] for e in effects if isinstance(e, InputTerm)]  # of others the table of values tells
     why = "; ".join([why, *(x.sentence for x in again), *forms])
     converged = all(fit.converged for fit in fits)

@@ -10,8 +10,7 @@ import numpy as np
 from lumped.model.network import Link, Network, Source
 from measured.case import Case, Test
 from validation.effects import catalogue
-from validation.effects.base import Interval
-from validation.effects.input_terms import law_sentence
+from validation.effects.base import Interval, law_sentence
 from validation.parameters.unknowns import scene_of, standing
 from validation.yardstick.network_terms import follows, input_term, inputs_of, largest_inputs, term_elements
 from validation.yardstick.terms import Term
