@@ -312,6 +312,10 @@ from thermoscope.case_folder.runs import (
     sensors as sensors,
     step_words as step_words,
 )
+from thermoscope.case_folder.stored_comparison import (
+    yardstick_document as yardstick_document,
+    yardstick_words as yardstick_words,
+)
 from thermoscope.case_folder.settings import Settings as Settings, read_settings as read_settings
 from thermoscope.case_folder.workbook import tables as tables, write_csvs as write_csvs, write_xlsx as write_xlsx
 from thermoscope.commands.model.import_file import import_summary as import_summary, write_import as write_import

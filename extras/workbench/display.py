@@ -57,7 +57,7 @@ NOTHING: dict[str, Any] = {"data": [], "layout": {}}
 START: dict[str, Any] = {  # of a tab, before anything is known
     **dict.fromkeys(("busy", "comparing", "dark", "can_undo", "has_confusion"), False),
     **dict.fromkeys(("error", "report", "viewer", "viewer_rest", "preparing", "test", "sensor", "plotly"), ""),
-    **dict.fromkeys(("rms", "floor", "dragged", "made"), ""),
+    **dict.fromkeys(("rms", "floor", "plain", "warning", "dragged", "made"), ""),
     **dict.fromkeys(("outcome", "verdict", "live", "drop"), None),
     **dict.fromkeys(("curve", "confusion", "live_curve"), NOTHING),
     **{name: [] for name in ("tests", "test_names", "sensors", "effects", "steps", "candidates", "imported")},
@@ -99,6 +99,10 @@ class Display:
         self.state.revision, self.state.steps = last.number, rows.steps(history, case)
         self.state.can_undo = len(effective(history)) > 1
         self.state.rms, self.state.floor = f"{errors['rmse_K']:.2f}", f"{errors['floor_K']:.2f}"
+        self.state.warning, self.state.plain = (
+            errors.get("yardstick", {}).get("warning", ""),
+            th.yardstick_words(errors),
+        )
         (test, sensor), scale = rows.largest(look), self._scale
         ever = [error for r in history.revisions for pair in r.rmse_K.values() for error in pair]
         self._scale = max(test, scale[0], *ever), max(sensor, scale[1])

@@ -1,6 +1,7 @@
 """Recordings from raw file to last improvement: what is kept back, and what the table says."""
 
 import numpy as np
+import pytest
 import recordings as bench
 
 
@@ -39,6 +40,7 @@ def test_the_table_holds_the_last_step_against_the_best_yardstick():
         "3.00",
         "2.00",
         "",
+        "",
         "4.00",
         "**2.20**",
         "**2.00**",
@@ -48,6 +50,28 @@ def test_the_table_holds_the_last_step_against_the_best_yardstick():
     ]
     assert lines[-1] == "none: no column is a temperature"
     assert "median 1.10 / 1.00, worst 1.10 / 1.00 of 1" in lines[-3]
+
+
+@pytest.mark.parametrize(("name", "published"), [("hust", "9.00"), ("tclab", "")])
+def test_the_model_of_the_authors_is_told_where_the_case_declares_it(name, published):
+    yards = {"persistence": 12.0, "black_box": 3.0, "free_network": 2.0}
+    row = bench.Row(name, 4, 1, 2, yards, [("start", 9.0), ("calibrate", 4.0)], 4.0, published=True)
+    head, _, cells = (line.split("|")[1:-1] for line in bench.recordings_table([row]).splitlines()[:3])
+    told = dict(zip(map(str.strip, head), map(str.strip, cells), strict=True))
+    assert (told["published"], told["declared"]) == (published, "9.00")
+    assert {*bench.AUTHORS} <= {s.case.partition("-")[0] for s in bench.shipped()}
+
+
+@pytest.mark.parametrize("page", bench.PAGES, ids=lambda p: p.name)
+def test_the_pages_tell_what_the_front_page_says_of_the_published_model(page):
+    lines = [
+        line.split("|")[1:-1]
+        for line in page.read_text().splitlines()
+        if line.startswith(("| recording |", "| hust |"))
+    ]
+    told = dict(zip(map(str.strip, lines[0]), map(str.strip, lines[1]), strict=False))
+    front = next(line for line in bench.PAGES[1].read_text().splitlines() if line.startswith("| published |"))
+    assert told["published"] == front.split("|")[5].strip()
 
 
 def test_the_shipped_recordings_keep_back_the_profiles_of_the_paper():

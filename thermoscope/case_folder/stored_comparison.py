@@ -93,7 +93,7 @@ def yardstick_document(yard: Yardstick | None, comparison: Comparison, case: Cas
     """What plain models leave beside a model, for a document; empty where the tests teach nothing."""
     if yard is None:
         return {}
-    words = {"sentence": sentence(yard, comparison), "warning": warning(yard, comparison)}
+    words = {"warning": warning(yard, comparison), "sentence": sentence(yard, comparison)}
     network = standing(case)
     of_file = {x.name for x in case.model.network.links}
     lacking = [
@@ -101,15 +101,16 @@ def yardstick_document(yard: Yardstick | None, comparison: Comparison, case: Cas
         for s in suggested_effects(yard.terms, case)
         if all(x.name in of_file for x in links_between(network, s.place, s.other))  # none was added
     ]
-    return {"yardstick": {**yard.document(), "model_K": model_error(yard, comparison), "lacking": lacking, **words}}
+    return {"yardstick": {**words, **yard.document(), "model_K": model_error(yard, comparison), "lacking": lacking}}
 
 
-def lacking_words(document: Mapping[str, Any]) -> str:
-    """What a free network has and the model lacks, as a sentence; "" where nothing, or where it predicts no better."""
-    yard = document.get("yardstick", {})
+def yardstick_words(document: Mapping[str, Any]) -> str:
+    """What plain models leave, and what a free network has and the model lacks where it predicts better; "" of none."""
+    yard = document.get("yardstick", {"sentence": ""})
     best = yard.get("free_network_K") or float("inf")
     each = [row["words"] for row in yard.get("lacking", [])][:FEW] if best < yard.get("model_K", 0.0) else []
-    return f"The free network has what the model lacks: {'; '.join(each)}." if each else ""
+    lacking = f" The free network has what the model lacks (in brackets: a test left out): {'; '.join(each)}."
+    return str(yard["sentence"]) + lacking * bool(each)
 
 
 def stored_yardstick(case: Case) -> Yardstick | None:

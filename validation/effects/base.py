@@ -102,6 +102,11 @@ class Effect(ABC):
         """What it says of the machine and where, in words: "forced convection by vehicle wind at flange.right"."""
         return f"{self.title} {place_words(self.place)}"
 
+    def law_words(self, a: float, network: Network, values: Mapping[str, float], ci95: Interval) -> str:
+        """What an amplitude came to in a fit: its size; "stator to coolant: 56 W/K at rest, 112 at ..." of a law."""
+        unit = next(p.unit for p in network.parameters if p.name == self.name)
+        return law_sentence(self.statement, a, a, unit, interval=ci95)
+
     @property
     def large(self) -> tuple[float, ...]:
         """Usual amplitudes that leave the tangent behind: the share that something loses where it only can lose."""
@@ -203,6 +208,13 @@ class ReadingEffect(Effect):
     @abstractmethod
     def words(self, a: float, network: Network, values: Mapping[str, float], ci95: Interval = NOTHING) -> str:
         """What an amplitude means, beside what the network has there at the values of its parameters."""
+
+
+def law_sentence(subject: str, rest: float, most: float, unit: str, at: str = "", interval: Interval = NOTHING) -> str:
+    """ "stator to coolant: 56 W/K at rest, 112 at speed_rpm 4000 [100, 125]"; "body to room: 2 W/K [1.8, 2.3]" of what
+    follows no input: a law, wherever it is told."""
+    size = f"{rest:.3g} {unit} at rest, {most:.3g} at {at}" if at else f"{most:.3g} {unit}".removesuffix(" 1")
+    return f"{subject}: {size}" + (f" [{interval[0]:.3g}, {interval[1]:.3g}]" if interval[1] > interval[0] else "")
 
 
 def place_words(where: str) -> str:

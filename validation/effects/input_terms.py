@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import re
-from abc import abstractmethod
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
 from typing import ClassVar
@@ -17,7 +16,7 @@ from lumped.model.network import Link, Network, Source
 from lumped.transfer.laws import Array, InputPower, Inputs, Law
 from lumped.transfer.ranges import within_silence
 from measured.sensors.operators import head
-from validation.effects.base import NOTHING, Effect, Interval, ReadingEffect, place_words, with_parameter
+from validation.effects.base import NOTHING, Effect, Interval, ReadingEffect, law_sentence, place_words, with_parameter
 from validation.effects.build import Shaped, conductance_scale, exchange, heat, links_between, power_scale
 
 PLACE = re.compile(r"([^|]+)(?:\|([^|]+))?\|([^|]+)")
@@ -115,10 +114,6 @@ class InputTerm(ReadingEffect):
         """ "speed_rpm 4000 and id_A 120"."""
         return " and ".join(f"{name} {level:g}" for name, level in self.most.items())
 
-    @abstractmethod
-    def law_words(self, a: float, network: Network, values: Numbers, ci95: Interval) -> str:
-        """ "stator to coolant: 56 W/K at rest, 112 at speed_rpm 4000 [100, 125]", and what is not a straight line."""
-
     def words(self, a: float, network: Network, values: Numbers, ci95: Interval = NOTHING) -> str:
         """The same, of something missing."""
         return f"missing: {self.law_words(a, network, values, ci95)}"
@@ -189,12 +184,6 @@ class InputConductance(InputTerm):
         return with_parameter(network.extended(links=[link]), parameter)
 
 
-def law_sentence(subject: str, rest: float, most: float, unit: str, at: str, interval: Interval = NOTHING) -> str:
-    """ "stator to coolant: 56 W/K at rest, 112 at speed_rpm 4000 [100, 125]": a law of inputs, wherever it is told."""
-    sure = f" [{interval[0]:.3g}, {interval[1]:.3g}]" if interval[1] > interval[0] else ""
-    return f"{subject}: {rest:.3g} {unit} at rest, {most:.3g} at {at}{sure}"
-
-
 def _width(a: float, ci95: Interval) -> Interval:
     """An interval about the amplitude in it."""
     return (ci95[0] - a, ci95[1] - a) if ci95[1] > ci95[0] else NOTHING
@@ -214,10 +203,9 @@ def _total(elements: Iterable[Link | Source], network: Network, values: Numbers,
         )
 
 
-def law_words(effects: Iterable[Effect], network: Network, values: Numbers, ci95: Mapping[str, Interval]) -> list[str]:
-    """What the terms that follow inputs came to in a fit, with their intervals, as they are told everywhere."""
-    return [
-        e.law_words(values[e.name], network, values, ci95.get(e.name, NOTHING))
-        for e in effects
-        if isinstance(e, InputTerm)
-    ]
+def law_words(
+    effects: Iterable[Effect], network: Network, values: Numbers, ci95: Mapping[str, Interval]
+) -> dict[str, str]:
+    """Effect -> what it came to in a fit, with its interval, as it is told everywhere."""
+    mine = [e for e in effects if e.name in values]
+    return {e.name: e.law_words(values[e.name], network, values, ci95.get(e.name, NOTHING)) for e in mine}

@@ -71,6 +71,7 @@ class Step:
             "rmse_K": self.comparison.rmse_K,
             "fitted_rmse_K": self.comparison.fitted_rmse_K,
             "evidence": dict(self.evidence),
+            "laws": dict(self.revision.laws) if self.revision else {},
         }
 
 
@@ -200,11 +201,10 @@ def ended(case: Case, stairs: Sequence[Step], diagnosis: Diagnosis, why: str) ->
         why = f"{why}; no plain model can be learnt from these tests, so nothing says how good a model could be"
         return Improvement(case, tuple(stairs), diagnosis, why + rise_words(stairs))
     kind, K = min(finite.items(), key=lambda x: x[1])
-    beside = f"each test predicted from the others: this model {ours:.2f} K, {NAMES[kind]} {K:.2f} K"
+    plain = f"{NAMES[kind]} {K:.2f} K"
+    beside = f"each test predicted from the others: this model {ours:.2f} K, {plain}"
     if last is None or last.left_out_K is None:  # nothing was left out of its fit
-        beside = (
-            f"as fitted this model leaves {ours:.2f} K; each test predicted from the others, {NAMES[kind]} {K:.2f} K"
-        )
+        beside = f"as fitted this model leaves {ours:.2f} K; each test predicted from the others, {plain}"
     why = f"{beside}; {why}" if ours > WORTH * K else f"{why}; {beside}"
     return Improvement(case, tuple(stairs), diagnosis, why + rise_words(stairs), K)
 

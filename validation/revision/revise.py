@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from math import isfinite, sqrt
 
 import numpy as np
@@ -30,7 +30,7 @@ from validation.comparison.linearisation import segments
 from validation.comparison.reading_correction import corrected_tests
 from validation.effects import Effect, effect
 from validation.effects.during import During
-from validation.effects.input_terms import law_words
+from validation.effects.input_terms import InputTerm, law_words
 from validation.effects.time_window import checked, holds, lasts
 from validation.parameters.unknowns import FREE, case_reference, scene_of, standing, working
 from validation.revision.acceptance import (
@@ -87,7 +87,10 @@ class Change:
 
 @dataclass(frozen=True)
 class Revision(TableResult):
-    """What a revision did. accepted says whether the error fell where it should; the new model is given either way."""
+    """What a revision did. accepted says whether the error fell where it should; the new model is given either way.
+
+    laws : effect of the new model -> its law, or its size, with the interval, in words
+    """
 
     action: str
     effect: str | None
@@ -100,6 +103,7 @@ class Revision(TableResult):
     after: Comparison
     converged: bool
     checks: tuple[Check, ...] = ()
+    laws: Mapping[str, str] = field(default_factory=dict)
 
     @property
     def worth_keeping(self) -> bool:
@@ -142,6 +146,7 @@ class Revision(TableResult):
             "tests": [t.document() for t in self.tests],
             "parameters": [p.document() for p in self.parameters],
             "checks": [c.document() for c in self.checks],
+            "laws": dict(self.laws),
         }
 
 
@@ -245,12 +250,13 @@ def _revised(
         acceptance = _fit_checks(case, sure[-1], new, changes) if action == "calibrate" else ()
     accepted, why = judge(action, changes, fits, acceptance, {t.name for t in tests})
     rows = merged(sure, lambda fit: estimates(fit, _profiled(fit, tests, new, profiled, progress)))
-    effects, ci95 = [effect(e.name) for e in new.effects], {p.name: p.ci95 for p in rows}
-    new = replace(new, intervals={p.name: p.ci95 for p in rows})
+    new, effects = replace(new, intervals={p.name: p.ci95 for p in rows}), [effect(e.name) for e in new.effects]
     again = repeated_events(replace(case, model=new)) if action == "add" and accepted else ()
-    why = "; ".join([why, *(x.sentence for x in again), *law_words(effects, fits[-1].network, new.values, ci95)])
+    laws = law_words(effects, fits[-1].network, new.values, new.intervals)
+    forms = [laws[e.name] for e in effects if isinstance(e, InputTerm)]  # of others the table of values tells
+    why = "; ".join([why, *(x.sentence for x in again), *forms])
     converged = all(fit.converged for fit in fits)
-    return Revision(action, name, new, accepted, why, changes, tuple(rows), before, after, converged, acceptance)
+    return Revision(action, name, new, accepted, why, changes, tuple(rows), before, after, converged, acceptance, laws)
 
 
 def _effect_checks(
@@ -338,8 +344,8 @@ def _fit_checks(case: Case, fit: Fit, new: Model, changes: Sequence[Change]) -> 
     """Does a calibration lower the error of its own tests, leave others as well predicted as they were before, and
     predict none worse than a guess of no change does?
 
-    The others are the tests that a fit may use and this one did not, and each of its own left out in turn; before and
-    after are compared of those that the model as it stood had not seen either.
+    The others are the tests that a fit may use and this one did not, also where an effect was added on them; and each
+    of its own left out in turn, where the model as it stood had not seen it either.
     """
     previous = {t.name for t in case.fitted} if case.model.values else set()
     fitted = [t for t in case.usable if t.name in {s.test for s in fit.parts}]
@@ -355,7 +361,7 @@ def _fit_checks(case: Case, fit: Fit, new: Model, changes: Sequence[Change]) -> 
             seconds += span
     changed = [c for c in changes if c.role in TRAINING and isfinite(c.before)]
     mine = [c for c in changed if c.name in {t.name for t in fitted}]
-    unseen = [c for c in changed if c not in mine and c.name not in previous]
+    unseen = [c for c in changed if c not in mine]
     groups = {kind: some for kind, some in (("unseen", unseen), (FITTED, mine)) if some}
     pairs = {"left out": np.sqrt(square / seconds)} if seconds else {}
     pairs |= {k: np.array([mean_square(some, "before"), mean_square(some, "after")]) for k, some in groups.items()}

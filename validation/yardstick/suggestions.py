@@ -10,7 +10,7 @@ import numpy as np
 from lumped.model.network import Link, Network, Source
 from measured.case import Case, Test
 from validation.effects import catalogue
-from validation.effects.input_terms import law_sentence
+from validation.effects.base import Interval, law_sentence
 from validation.parameters.unknowns import scene_of, standing
 from validation.yardstick.network_terms import follows, input_term, inputs_of, largest_inputs, term_elements
 from validation.yardstick.terms import Term
@@ -22,6 +22,7 @@ class Suggestion:
 
     other : the link's other end, "" of a loss;  inputs : that it follows and what is declared does not
     rest, most : value where nothing turns or flows, and at the largest inputs;  unit : W/K, W; 1/s, K/s per capacity
+    interval : of `most`, over the fits with one test left out
     starts : effect that adds it -> where a fit may begin; empty where no capacity is known
     effects : those of them to be added, more than one where two powers of an input are needed
     share : of all heat that the sensor exchanges
@@ -32,6 +33,7 @@ class Suggestion:
     inputs: tuple[str, ...]
     rest: float
     most: float
+    interval: Interval
     unit: str
     share: float
     starts: Mapping[str, float]
@@ -39,11 +41,10 @@ class Suggestion:
 
     @property
     def words(self) -> str:
-        """stator to coolant: 18.5 W/K at rest, 29.9 at the largest speed_rpm"""
+        """stator to coolant: 18.5 W/K at rest, 29.9 at the largest speed_rpm [28.1, 31.2]"""
         what = f"{self.place} to {self.other}" if self.other else f"a loss at {self.place}"
-        if not self.inputs:
-            return f"{what}: {self.rest:.3g} {self.unit}"
-        return law_sentence(what, self.rest, self.most, self.unit, f"the largest {' and '.join(self.inputs)}")
+        where = f"the largest {' and '.join(self.inputs)}" if self.inputs else ""
+        return law_sentence(what, self.rest, self.most, self.unit, where, self.interval)
 
     def document(self) -> dict:
         """As an entry of `lacking`."""
@@ -81,6 +82,7 @@ def _suggestion(group: Sequence[Term], case: Case, network: Network) -> Suggesti
         inputs,
         sum(t.value for t in group if not t.input),
         sum(t.value for t in group),
+        (sum(t.low for t in group), sum(t.high for t in group)),
         first.unit,
         sum(t.share for t in lacking),
         starts or terms,

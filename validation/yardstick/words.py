@@ -36,11 +36,12 @@ def sentence(yard: Yardstick, comparison: Comparison) -> str:
 
 
 def warning(yard: Yardstick, comparison: Comparison) -> str:
-    """What is to be said before all else of a model that knows less than none; "" of any other."""
-    error, none = model_error(yard, comparison), yard.errors.get("persistence", np.inf)
-    if not error > none:
-        return ""
-    return f"Worse than no model at all: {error:.2f} K, where a guess of no change leaves {none:.2f} K."
+    """What is to be said before all else of a model that no model, or one without physics, beats; "" of any other."""
+    error = model_error(yard, comparison)
+    for kind, what, worth in (("persistence", "a guess of no change", 1.0), ("black_box", "that", WORTH)):
+        if error > worth * (plain := yard.errors.get(kind, np.inf)):
+            return f"Worse than {NAMES[kind]}: {error:.2f} K, where {what} leaves {plain:.2f} K."
+    return ""
 
 
 def _rest(yard: Yardstick, comparison: Comparison, error: float) -> str:

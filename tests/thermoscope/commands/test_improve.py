@@ -2,6 +2,7 @@
 
 import io
 import json
+import re
 from dataclasses import replace
 from types import SimpleNamespace
 
@@ -10,6 +11,7 @@ import pytest
 from small_case import small_case
 
 from measured.case import Case, Model, Test
+from thermoscope.case_folder.folder import load_case
 from thermoscope.case_folder.history import load_history
 from thermoscope.cli import whole_app
 from thermoscope.commands.explain import improve as command
@@ -53,6 +55,16 @@ def test_the_staircase_falls_on_the_test_never_used(improved):
     town = [next(t["rmse_K"] for t in s["tests"] if t["role"] == "hold-out") for s in stairs]
     assert town[0] > 2.0
     assert town[-1] < 0.4  # K, the smallest sigma declared
+
+
+def test_the_size_of_what_was_added_is_told_with_its_interval(improved):
+    _, document, case = improved
+    last = load_history(case / "model.toml").revisions[1]
+    (low, high), value = last.intervals["convection@flange"], last.values["convection@flange"]
+    assert [s["laws"] for s in document["stairs"][:2]] == [{}, {}]
+    words = document["stairs"][-1]["laws"]["convection@flange"]
+    assert re.search(rf"at flange: {value:.3g} .+ \[{low:.3g}, {high:.3g}\]$", words)
+    assert f"As fitted: {words} (95 %)." in command.improvement_summary(document, load_case(case), "own").parts
 
 
 def test_the_history_keeps_the_evidence(improved):

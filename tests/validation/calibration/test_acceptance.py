@@ -175,6 +175,19 @@ def test_a_calibration_that_only_its_own_test_gains_by_is_kept_for_that():
     assert re.match(r"kept for the fitted tests only: [0-9.e-]+ -> [0-9.]+ K \(usual\); ", done.why)
 
 
+def test_a_calibration_after_an_addition_is_told_what_it_costs_the_other_tests():
+    """The addition was fitted to both tests; the calibration to one of them, whose film is half the other's."""
+    odd = measured("odd", loss=1.6)
+    case = Case("one", Model(one_node(FILM)), (odd, measured("usual", "validate")))
+    grown = add(case, "mass@body").model
+    assert set(grown.reference.tests) == {"odd", "usual"}
+    done = calibrate(replace(case, model=grown))
+    assert (done.accepted, done.worth_keeping) == (False, True)
+    assert re.match(r"kept for the fitted tests only: [0-9.e-]+ -> [0-9.]+ K \(usual\); ", done.why)
+    (check,) = [c for c in done.checks if c.check == "unseen"]
+    assert check.value > 1.05 * check.limit
+
+
 def test_a_calibration_that_predicts_worse_than_no_change_is_said_so():
     """A fifth of the declared loss, and a film that may at most double: 20 K off before, 7.5 after, where the readings
     themselves rise by 5 K."""

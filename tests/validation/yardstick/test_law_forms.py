@@ -10,7 +10,7 @@ from test_suggestions import SILENT
 from lumped.transfer.laws import InputPower
 from validation.calibration.calibrate import no_progress
 from validation.effects import effect
-from validation.revision.improvement import Supervisor, further_step, singletons
+from validation.revision.improvement import Step, Supervisor, further_step, singletons
 from validation.revision.revise import add
 from validation.yardstick.network_terms import follows
 from validation.yardstick.yardstick import free_network_terms
@@ -38,10 +38,13 @@ def test_a_law_sets_in_where_it_is_said_to():
 
 
 def test_what_was_added_is_told_as_a_law_with_its_interval():
-    why = add(case(bench(pumped=0.7), bench()), "conductance.input@two|ambient|pump at 3000").why
-    assert "two to ambient: 0.7" in why
-    assert "at pump 3000 [1.3" in why
-    assert "(with pump to the power of 0.8" in why
+    name = "conductance.input@two|ambient|pump at 3000"
+    step = add(case(bench(pumped=0.7), bench()), name)
+    law = Step(step.after, {}, step).document()["laws"][name]  # as `improve` tells it
+    assert law in step.why
+    assert law.startswith("two to ambient: 0.7")
+    assert "at pump 3000 [1.3" in law
+    assert "(with pump to the power of 0.8" in law
 
 
 def test_terms_that_need_each_other_are_added_in_one_step():

@@ -55,7 +55,9 @@ def test_a_link_that_was_left_out_is_suggested_with_the_size_that_it_has(case):
     first = suggested_effects(yardstick(poorer).terms, poorer)[0]
     assert (first.place, first.other, first.inputs) == ("body", "ambient", ())
     assert first.most == pytest.approx(2.0, rel=0.05)
-    assert first.words == f"body to ambient: {first.rest:.3g} W/K"
+    low, high = first.interval
+    assert low < first.most < high < 1.1 * low
+    assert first.words == f"body to ambient: {first.rest:.3g} W/K [{low:.3g}, {high:.3g}]"
     assert "convection.constant@body" in first.starts
 
 

@@ -17,7 +17,7 @@ from thermoscope.case_folder.columns import checked_columns, write_columns
 from thermoscope.case_folder.folder import Folder
 from thermoscope.case_folder.history import History, save_history
 from thermoscope.case_folder.runs import added_words, finding_words
-from thermoscope.case_folder.stored_comparison import lacking_words, yardstick_document
+from thermoscope.case_folder.stored_comparison import yardstick_document, yardstick_words
 from thermoscope.commands.model.revise import recorded
 from thermoscope.commands.open_case import open_case_for_writing, save_diagnosis
 from thermoscope.console.options import Case, Json
@@ -57,7 +57,7 @@ def improve(
     save_diagnosis(folder, json.loads(json.dumps(last, default=float)))
     errors = result.stairs[-1].comparison
     plain = yardstick_document(folder.yardstick, errors, result.case)
-    document = {"case": folder.case.name, **result.document(), "written": ledger.written, **plain}
+    document = {"case": folder.case.name, **plain, **result.document(), "written": ledger.written}
     document["strained"] = strain_words(result.case)
     if any(step["effect"] for step in document["stairs"]):
         document["found"] = finding_words(replace(folder, case=result.case, history=ledger.history), errors.document())
@@ -130,14 +130,14 @@ def improvement_summary(document: Mapping[str, Any], folder: Folder, called: str
         more += (
             f"; not so? thermoscope explain diagnose {quote(called)} --without {quote(added[-1].partition(' + ')[0])}"
         )
-    yard, why = document.get("yardstick", {"sentence": "", "warning": ""}), document["why"]
-    plain = f"{yard['sentence']} {lacking_words(document)}" if yard["sentence"] else ""
+    why = document["why"]
     clauses = [
-        yard["warning"],
+        document.get("yardstick", {}).get("warning", ""),
         document.get("found", ""),
         f"{why[:1].upper()}{why[1:]}; {outcome}.",
         document["strained"],
     ]
     sentence = " ".join(filter(None, clauses))
     refusals = Table.of("Tried and refused", document["refused"], "*what | *reason=why")
-    return Summary(sentence, [errors, plain, refusals, *further], more)
+    laws = [f"As fitted: {words} (95 %)." for words in steps[-1]["laws"].values()]
+    return Summary(sentence, [errors, *laws, yardstick_words(document), refusals, *further], more)

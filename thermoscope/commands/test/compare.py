@@ -93,6 +93,7 @@ def compared(
         more = {"uncertainty": uncertainties, **discrepancies(folder.case, tell).document()}
     bands = {"bands": test_bands(folder, tell)} if bands_requested(folder.case.model.network, sure) else {}
     return result, {
+        **yardstick_document(folder.yardstick, result, folder.case),  # first, as what is said of it
         **result.document(),
         "strained": strain_words(folder.case),
         "repeated_events": repeated(folder.case),
@@ -100,7 +101,6 @@ def compared(
         "error_budget": documents(budgets),
         **sampling(folder),
         **bands,
-        **yardstick_document(folder.yardstick, result, folder.case),
     }
 
 
@@ -116,15 +116,14 @@ def repeated(case: MeasuredCase) -> list[dict[str, Any]]:
 def comparison_summary(document: Mapping[str, Any], called: str, doubts: str = "") -> Summary:
     """How many sensors are over, which, and what the rest looks like.
 
-    called : what the user calls the case;  doubts : of its recordings, before all else
+    called : what the user calls the case;  doubts : of its recordings, before the verdict
     """
-    from thermoscope.case_folder.stored_comparison import lacking_words
+    from thermoscope.case_folder.stored_comparison import yardstick_words
 
     tests, budgets, steps = document["tests"], document["error_budget"], document["sampling"]
-    plain = document.get("yardstick", {"warning": "", "sentence": ""})
     first, *rest = comparison_tables(document)
     parts = [
-        f"{plain['sentence']} {lacking_words(document)}".strip(),
+        yardstick_words(document),
         *(f"Again: {x['words']}." for x in document.get("repeated_events", ())),
         *(_reasons(document) if "patterns" in document else []),
         sensors_table("Over: error is measured - model", tests, "over"),
@@ -134,7 +133,8 @@ def comparison_summary(document: Mapping[str, Any], called: str, doubts: str = "
         roles_in_short(document["roles"]),
     ]
     more = f"--why, --json FILE; thermoscope show report {quote(called)}"
-    before, verdict = [doubts, plain["warning"]], [document["words"], document.get("strained", "")]
+    worse = document.get("yardstick", {}).get("warning", "")
+    before, verdict = [worse, doubts], [document["words"], document.get("strained", "")]
     words = "\n".join(filter(None, (" ".join(filter(None, some)) for some in (before, verdict))))
     every = [*rest, *budget(budgets, steps), bands_table(document.get("bands", ()))]
     return Summary(words, parts, more, every)
