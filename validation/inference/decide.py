@@ -213,7 +213,7 @@ def steady_decision(posterior: Posterior, decision: Callable[[Posterior], Decisi
     """The decision on all instants, with no more claimed than either half of them would, and nothing where half of
     them, on average of both, say that nothing is missing."""
     choice = decision(posterior)
-    halves = [decision(half_posterior(posterior, first)) for first in (0, 1)]
+    halves = [half_decision(posterior, decision, first, choice.verdict != "adequate") for first in (0, 1)]
     other = tuple(d for d in halves if differs(choice, d))
     silent = tuple(d for d in other if d.verdict == "adequate")
     if silent and np.mean([1.0 - d.sure for d in halves]) > SILENT:
@@ -225,6 +225,21 @@ def steady_decision(posterior: Posterior, decision: Callable[[Posterior], Decisi
         groups = united_groups(groups, d.groups)
     verdict: Verdict = "group" if choice.verdict == "named" else choice.verdict
     return replace(choice, verdict=verdict, groups=groups, others=other)
+
+
+def half_decision(
+    posterior: Posterior, decision: Callable[[Posterior], Decision], first: int, claims: bool
+) -> Decision:
+    """The decision on instants `first`, `first` + 2, ...; against what all instants claim, nothing only where that is
+    so with half of the prior, too.
+
+    What both halves find together is paid for once: the price of saying when several short events were is large.
+    """
+    half = half_posterior(posterior, first)
+    if (choice := decision(half)).verdict != "adequate" or not claims:
+        return choice
+    every = tuple(replace(h, log_prior=0.5 * h.log_prior) for h in half.hypotheses)
+    return decision(replace(half, hypotheses=every))
 
 
 def united_events(e: Evidence, hypotheses: Sequence[Weighed]) -> tuple[Weighed, ...]:

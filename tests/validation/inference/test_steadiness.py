@@ -102,6 +102,23 @@ def test_nothing_is_told_where_half_of_the_instants_say_that_nothing_is_missing(
     assert told == f"; {withheld} is not named, since every second reading alone says nothing is missing"
 
 
+@pytest.mark.parametrize(("nats", "verdict"), [(60.0, "named"), (45.0, "named"), (24.0, "adequate")])
+def test_what_both_halves_find_together_is_paid_for_once(nats, verdict):
+    """Five short openings that cost 20 nats to say, of which either half shows about a half; temper 1.5 to 2."""
+    p = posterior()
+    nothing, lid = (replace(h, loud=-np.inf) for h in (p.hypotheses[0], p.best))
+
+    def decision(q):
+        share = instants(q) / instants(p)
+        weighed = (replace(h, log_bayes=share * h.log_bayes) for h in (nothing, replace(lid, log_bayes=nats)))
+        prior = dict(zip((False, True), (h.log_prior for h in q.hypotheses), strict=True))
+        return decide(q.evidence, [replace(h, log_prior=prior[bool(h.members)]) for h in weighed])
+
+    few = replace(p, hypotheses=(replace(nothing, log_prior=-0.1), replace(lid, log_prior=-20.0)))
+    assert decision(few).verdict == ("adequate" if nats < 30.0 else "named")
+    assert steady_decision(few, decision).verdict == verdict
+
+
 def test_the_order_within_a_group_is_no_other_verdict():
     whole, half = Decision("group", ((0, 1),), 0.9), Decision("group", ((1, 0),), 0.9)
     choice = steady_decision(posterior(), lambda p: whole if instants(p) == instants(posterior()) else half)
@@ -220,7 +237,8 @@ def test_what_nothing_gains_by_a_noise_of_its_own_is_no_gain_under_that_noise():
 def test_one_half_that_is_a_little_less_sure_takes_no_name_from_the_other():
     """Nothing has a third in one half and next to nothing in the other, and in the whole."""
     whole = Decision("named", ((0,),), 0.98)
-    halves = iter([whole, Decision("adequate", (), 0.66)])
+    less = Decision("adequate", (), 0.66)
+    halves = iter([whole, less, less])
 
     def decision(p):
         return whole if instants(p) == instants(posterior()) else next(halves)
