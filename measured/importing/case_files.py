@@ -192,16 +192,14 @@ def with_loss(source: Source) -> Source:
     units, words = source.units, {c: {*tokens(label)} for c, label in source.labels.items() if source.is_numeric(c)}
     every = [c for c in words if unit_of(units[c]) in ("W", "kW")]
     ends, converted = ([c for side in of for c in every if words[c] & side] for of in ((GOES_IN, COMES_OUT), CONVERTED))
-    heats = any("current" in quantities_of(source.labels[c]) or words[c] & LOSS for c in words)
+    beside_current = len(converted) != 2 and any("current" in quantities_of(source.labels[c]) for c in words)
     powers = [c for c in every if not roles_of(source.labels[c])]
     if len(converted) == 2:
-        ends, heats = (
-            sorted(converted, key=lambda c: -np.nansum(source.numbers(c))),
-            any(words[c] & LOSS for c in words),
-        )
-    elif len(ends) != 2 and len(powers) == 2 and not heats:
+        ends = sorted(converted, key=lambda c: -np.nansum(source.numbers(c)))
+    elif len(ends) != 2 and len(powers) == 2 and not beside_current:
         ends = _sides(source, powers)
-    if heats or len(ends) != 2 or len({*ends}) != 2 or units[ends[0]] != units[ends[1]]:
+    lost = any(of & LOSS for of in words.values())
+    if lost or beside_current or len(ends) != 2 or len({*ends}) != 2 or units[ends[0]] != units[ends[1]]:
         return source
     loss = source.numbers(ends[0]) - source.numbers(ends[1])
     equal = [c for c in words if c not in ends and is_equal(source.numbers(c), loss)]

@@ -366,7 +366,8 @@ def _with_switches(source: Source, every: list[Guess]) -> list[Guess]:
 def _of_one(source: Source, every: list[Guess]) -> list[Guess]:
     """Of the first machine, and a doubt, where speeds differ by a number alone; a doubt at all that are numbered, and
     where a number in every row names one of several."""
-    for n in (g.column for g in every if g.doubt == OF_ROWS and 1 < np.unique(source.numbers(g.column)).size < STATES):
+    ids = {g.column: source.numbers(g.column) for g in every if g.doubt == OF_ROWS}
+    for n in (n for n, of in ids.items() if np.unique(of).size < STATES and np.mean(np.diff(of) != 0) > FALLING):
         every = [g.also(f"{MIXED} '{n}'") if g.place else g for g in every]
     words = {g.column: itertools.pairwise(tokens(source.labels[g.column])) for g in every if g.place}
     numbers = {c: n for c, pairs in words.items() for word, n in pairs if word in MACHINE and n.isdigit()}
@@ -508,9 +509,8 @@ def _by_partner(source: Source, column: str) -> str:
         rest = [*words[:i], *words[i + 1 :]]
         phases = any((*words[:i], phase, *words[i + 1 :]) in others for phase in "uw")
         volts = ends_united and source.labels[column][-2:] == "_v" and i == len(words) - 1 > 0
-        if (volts or (*words[:i], partner, *words[i + 1 :]) in others) and not (
-            phases or quantities_of(" ".join(rest))
-        ):
+        paired = volts or (*words[:i], partner, *words[i + 1 :]) in others
+        if paired and not (phases or quantities_of(" ".join(rest))):
             return " ".join([*rest, meaning])
     return source.labels[column]
 
@@ -759,9 +759,7 @@ def single(guesses: list[Guess], target: Target, labels: Mapping[str, str]) -> l
     owner: dict[str, str] = {}
     out = {g.column: g for g in guesses}
     words_of_parts = {word for g in guesses if g.place for word in tokens(labels[g.column])}
-    devices = {
-        word for word in words_of_parts if is_unknown(word) or word in INSTRUMENT
-    }  # the gpu's power heats the gpu
+    devices = {w for w in words_of_parts if is_unknown(w) or w in INSTRUMENT}  # the gpu's power heats the gpu
 
     def order(g: Guess) -> tuple[int, ...]:
         words = {*tokens(g.column), *tokens(labels[g.column])}
