@@ -180,11 +180,9 @@ def tests_of(source: Source) -> list[Source]:
     words = {n: np.array([*map(str, source.cells[n])]) for n in ids if each}
     words = {n: w for n, w in words.items() if 1 < len({*w.tolist()}) <= MACHINES}
     clock = _guessed_clock(source) if words else None
-    rising = clock is not None and (np.diff(clock.seconds) > 0).all()
-    turns = {n for n, w in words.items() if "id" in tokens(n) and 2 * np.sum(w[1:] != w[:-1]) > w.size}  # sensor_id
+    if clock is not None and (np.diff(clock.seconds) > 0).all():  # only of what takes turns: sensor_id
+        words = {n: w for n, w in words.items() if "id" in tokens(n) and 2 * np.sum(w[1:] != w[:-1]) > w.size}
     for name, of in words.items() if clock is not None else ():
-        if rising and name not in turns:
-            continue
         rows = [np.flatnonzero(of == word) for word in dict.fromkeys(of.tolist())]
         times = [clock.seconds[r] for r in rows] if clock else []
         enough = all(t.size >= FEWEST for t in times) or all(np.array_equal(t, times[0]) for t in times)

@@ -209,8 +209,7 @@ def guesses(source: Source, clock: Sequence[str], target: Target) -> list[Guess]
 def _by_readings(source: Source, every: list[Guess], target: Target) -> list[Guess]:
     """With columns as temperatures whose readings are like those of the others, where no unit says what they are."""
     hot = [g for g in every if g.quantity == "temperature" and not is_setpoint(source.labels[g.column])]
-    firsts = [v[np.isfinite(v)][:FIRST_ROWS] for g in hot for v in [in_memory(source, g)]]
-    starts = [float(np.median(v)) for v in firsts if v.size]
+    starts = [float(np.median(v[:FIRST_ROWS])) for g in hot if (v := readings_in_memory(source, g)).size]
     every = [_read_as(source, g, starts, target) if g.doubt == UNTOLD or g.why == "name" else g for g in every]
     series = {_stem(source.labels[g.column]): source.finite(g.column) for g in every if g.why in ("readings", "values")}
     for i, g in enumerate(every):  # the others of a row of numbered ones, which jump, or hardly move
@@ -320,14 +319,9 @@ def _products(source: Source, every: list[Guess], target: Target) -> list[Guess]
     factors = {g.column: source.numbers(g.column) for g in every if g.feeds and g.quantity in FACTORS}
     if not any(g.feeds and g.quantity == "speed" for g in every):
         return every
-    return [
-        g.without(PASSES)
-        if g.quantity == "power"
-        and g.feeds not in target.inputs
-        and is_product(source.numbers(g.column), [*factors.values()])
-        else g
-        for g in every
-    ]
+    free = [g.column for g in every if g.quantity == "power" and g.feeds not in target.inputs]
+    products = {c for c in free if is_product(source.numbers(c), [*factors.values()])}
+    return [g.without(PASSES) if g.column in products else g for g in every]
 
 
 def _of_converter(source: Source, every: list[Guess]) -> list[Guess]:
@@ -453,9 +447,8 @@ def guess(source: Source, column: str, target: Target) -> Guess:
     if not (unit_text or quantities_of(label)) and "load" in tokens(label):
         label = f"{label} share"
     unit = unit_of(unit_text) or _called_unit(label)
-    quantity, why, doubt = (
-        _by_values(source, column, label, target) if source.unnamed and not unit else _quantity(label, unit, target)
-    )
+    by_values = source.unnamed and not unit
+    quantity, why, doubt = _by_values(source, column, target) if by_values else _quantity(label, unit, target)
     if not quantity:
         return Guess(column, "", doubt="a clock? say so: time [s]" if _counts_on(source, column) else UNTOLD)
     values = source.numbers(column)
@@ -517,13 +510,8 @@ def _by_partner(source: Source, column: str) -> str:
 
 def _cold_start_outliers(source: Source, every: list[Guess], target: Target) -> list[Guess]:
     """With a doubt at what is warm where all others start alike, as what is not of a machine at rest."""
-    starts = {
-        g.column: float(v[np.isfinite(v)][0])
-        for g in every
-        if g.quantity == "temperature" and (g.place or not g.used) and not g.doubt.startswith(SAME)
-        for v in [in_memory(source, g)]
-        if np.isfinite(v).any()
-    }
+    hot = [g for g in every if g.quantity == "temperature" and (g.place or not g.used) and not g.doubt.startswith(SAME)]
+    starts = {g.column: float(v[0]) for g in hot if (v := readings_in_memory(source, g)).size}
     usual = float(np.median([*starts.values()])) if starts else 0.0
     odd = {c for c, start in starts.items() if abs(start - usual) > START_K}
     odd -= {c for c in odd if roles_of(source.labels[c])[:1] == [Role.AMBIENT] or is_spoken(source.labels[c], INLET)}
@@ -535,16 +523,8 @@ def _cold_start_outliers(source: Source, every: list[Guess], target: Target) -> 
         torque = Guess("", "torque", "N*m", why="readings", doubt=AS_TORQUE)
         odd -= loads
         every = [_fed(replace(torque, column=c), c, target) if (c := g.column) in loads else g for g in every]
-    return [
-        replace(
-            g,
-            doubt=g.doubt
-            or f"starts at {starts[g.column]:.3g} degC, all others near {usual:.3g}: is it of this machine?",
-        )
-        if g.column in odd
-        else g
-        for g in every
-    ]
+    doubts = {c: f"starts at {starts[c]:.3g} degC, all others near {usual:.3g}: is it of this machine?" for c in odd}
+    return [replace(g, doubt=g.doubt or doubts.get(g.column, "")) for g in every]
 
 
 def _left_out(source: Source, column: str) -> str:
@@ -591,8 +571,7 @@ def _left_out(source: Source, column: str) -> str:
 
 def _impossible(source: Source, g: Guess) -> str:
     """Why its readings cannot be what the name says, "" where they can: one bad column costs one column."""
-    values = in_memory(source, g)
-    finite = values[np.isfinite(values)]
+    finite = readings_in_memory(source, g)
     low, high = (COLDEST, HOTTEST) if g.quantity == "temperature" else (-LARGEST, LARGEST)
     if not finite.size:
         return CODES_ALONE
@@ -608,7 +587,7 @@ def _in_fahrenheit(source: Source, every: list[Guess]) -> list[Guess]:
     if max(sizes, default=SCALED) < SCALED and not any(source.units[column] for column in hot):
         small = f"never beyond {SCALED:g} degC: {ELSE}"
         return [replace(g, doubt=small) if g.column in hot and g.used else g for g in every]
-    starts = {c: v[0] for c, g in hot.items() if (v := (r := in_memory(source, g))[np.isfinite(r)]).size}
+    starts = {c: v[0] for c, g in hot.items() if (v := readings_in_memory(source, g)).size}
     rooms = [c for c in starts if Role.AMBIENT in roles_of(source.labels[c])[:1]]
     alike = np.ptp([*starts.values()] or [ALIKE_F, 0.0]) < ALIKE_F
     alike &= len(starts) > 1 or not any(source.units[c] for c in hot)
@@ -682,7 +661,7 @@ def _called_unit(label: str) -> str:
     return unit if any(unit in QUANTITIES[q].units for q in FIRST) else ""
 
 
-def _by_values(source: Source, column: str, label: str, target: Target) -> tuple[str, str, str]:
+def _by_values(source: Source, column: str, target: Target) -> tuple[str, str, str]:
     """Smooth readings of a file without names that can hardly be anything but temperatures, or are in another run."""
     values = source.finite(column)
     low, high = float(np.min(values)), float(np.max(values))
@@ -690,7 +669,7 @@ def _by_values(source: Source, column: str, label: str, target: Target) -> tuple
     different = np.unique(values).size  # states are few, and whole numbers
     many = different > 0.1 * values.size or (different > LEAST and bool((values % 1 != 0).any()))
     celsius = UNNAMED[0] < low and high < UNNAMED[1] and many
-    if not (is_smooth(values) and (absolute or celsius)) and label not in target.places_by_header:
+    if not (is_smooth(values) and (absolute or celsius)) and source.labels[column] not in target.places_by_header:
         return "", "", ""
     return "temperature", "values", f"no name: {BY_READINGS}"
 
@@ -846,6 +825,12 @@ def in_memory(source: Source, g: Guess) -> Array:
     """Readings in the unit of memory, without a logger's codes."""
     values = source.numbers(g.column)
     return converted(_without_codes(values) if g.quantity == "temperature" else values, g.quantity, g.unit)
+
+
+def readings_in_memory(source: Source, g: Guess) -> Array:
+    """Those of its rows that have one."""
+    values = in_memory(source, g)
+    return values[np.isfinite(values)]
 
 
 def _without_codes(values: Array) -> Array:
