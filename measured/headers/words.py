@@ -23,6 +23,7 @@ DIFFERENCE, CLOCKS, LOSS, OUTER, CHANNELS = (WORDS[n] for n in ("difference", "c
 EXTREME, SPREAD, MEAN, INSTRUMENT, MACHINE = (WORDS[n] for n in ("extreme", "spread", "mean", "instrument", "machine"))
 SPARE, RUNS, SUPPLY, GOES_IN, COMES_OUT = (WORDS[n] for n in ("spare", "runs", "supply", "goes_in", "comes_out"))
 BATTERY = WORDS["battery"]
+CONVERTED = (frozenset({"dc", "pdc"}), frozenset({"ac", "pac"}))  # of a power, on both sides of a converter
 SUPPLY |= BATTERY
 STATISTICS = EXTREME | MEAN | SPREAD
 STAGE, PUMP, EXHAUST, CABINET, COLD = (WORDS[n] for n in ("stage", "pump", "exhaust", "cabinet", "cold"))

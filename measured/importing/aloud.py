@@ -31,6 +31,7 @@ from measured.importing.guess import (
     OF_SENSOR,
     OF_TESTED,
     OF_USER,
+    ONE_SIDE,
     UNKNOWN,
     UNTOLD,
     WHOLE,
@@ -232,7 +233,8 @@ def _doubted(columns: Columns) -> dict[str, str]:
         unknown = g.place and g.why != OF_USER and not roles_of(f"{label} {g.place}") and not is_whole(label)
         fluid = g.place == "coolant" and not is_spoken(label, INLET)
         flows = (OUTLET if rise(r.source, g) > STILL * most else NO_INLET) if fluid else ""
-        doubt = ELSE if ELSE in g.doubt else g.doubt or (NO_PART if unknown else flows)
+        first = next((words for words in (ELSE, ONE_SIDE) if words in g.doubt), g.doubt)
+        doubt = first or (NO_PART if unknown else flows)
         if g.used and doubt:
             out.setdefault(doubt, []).append(g.column)
     units_of = {doubt: match[1] for doubt in out if (match := UNIT.search(doubt))}

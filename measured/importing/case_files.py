@@ -24,7 +24,7 @@ from geom.storage import abandoned, cache_folder, locked, write_whole
 from geom.text import visible
 from measured.headers.cells import unit_of
 from measured.headers.rows import NO_RECORD
-from measured.headers.words import COMES_OUT, GOES_IN, LOSS, quantities_of, roles_of, tokens
+from measured.headers.words import COMES_OUT, CONVERTED, GOES_IN, LOSS, quantities_of, roles_of, tokens
 from measured.importing.clock import Clock, clock_of, in_time_order, on_one_clock, runs_of, tests_of
 from measured.importing.draft import Draft, sample_of
 from measured.importing.guess import Guess
@@ -187,14 +187,19 @@ def read_runs(
 def with_loss(source: Source) -> Source:
     """With what goes in less what comes out as a loss, and a note, where no loss and no current was recorded.
 
-    Of two powers that go together and say no side the larger goes in.
+    Of two powers that go together and say no side, and of a converter's, whatever its currents, the larger goes in.
     """
     units, words = source.units, {c: {*tokens(label)} for c, label in source.labels.items() if source.is_numeric(c)}
-    ends = [c for side in (GOES_IN, COMES_OUT) for c in words if unit_of(units[c]) in ("W", "kW") and words[c] & side]
-    heats = any("current" in quantities_of(source.labels[c]) or words[c] & LOSS for c in words)
-    powers = [c for c in words if unit_of(units[c]) in ("W", "kW") and not roles_of(source.labels[c])]
-    ends = _sides(source, powers) if len(ends) != 2 and len(powers) == 2 and not heats else ends
-    if heats or len(ends) != 2 or len({*ends}) != 2 or units[ends[0]] != units[ends[1]]:
+    every = [c for c in words if unit_of(units[c]) in ("W", "kW")]
+    ends, converted = ([c for side in of for c in every if words[c] & side] for of in ((GOES_IN, COMES_OUT), CONVERTED))
+    beside_current = len(converted) != 2 and any("current" in quantities_of(source.labels[c]) for c in words)
+    powers = [c for c in every if not roles_of(source.labels[c])]
+    if len(converted) == 2:
+        ends = sorted(converted, key=lambda c: -np.nansum(source.numbers(c)))
+    elif len(ends) != 2 and len(powers) == 2 and not beside_current:
+        ends = _sides(source, powers)
+    lost = any(of & LOSS for of in words.values())
+    if lost or beside_current or len(ends) != 2 or len({*ends}) != 2 or units[ends[0]] != units[ends[1]]:
         return source
     loss = source.numbers(ends[0]) - source.numbers(ends[1])
     equal = [c for c in words if c not in ends and is_equal(source.numbers(c), loss)]

@@ -23,14 +23,16 @@ from measured.recordings.units import QUANTITIES
 
 INSTANT = re.compile(
     r"(?P<a>\d{1,2}|\d{4})(?P<sign>[-/.])\s?(?P<b>\d{1,2})[-/.]\s?(?P<c>\d{1,2}|\d{4})\.?"
-    r"(?:(?:\s*[T ,;]\s*|\s*-\s+)(?P<hour>\d{1,2}):(?P<minute>\d{2})"
-    r"(?::(?P<second>\d{2})(?:[.,:](?P<fraction>\d+))?)?)?"
+    r"(?:(?:\s*[T ,;]\s*|\s*-\s+)(?P<hour>\d{1,2}):(?P<minute>\d{2}|\d(?=:))"
+    r"(?::(?P<second>\d{1,2})(?:[.,:](?P<fraction>\d+))?)?)?"
     r"(?:\s*(?P<half>[AaPp])\.?[Mm]\.?)?"
     r"\s*(?P<zone>(?:UTC|GMT)?(?P<east>[-+])(?P<hours>\d{2}):?(?P<minutes>\d{2})?|Z|MES?Z|UTC|[A-Z]{2,3}T)?"
 )
 ISO = re.compile(r"\d{4}-\d\d-\d\d[ T]\d\d:\d\d(?::\d\d(?:\.\d{1,6})?)?")  # NumPy reads it
 ZONES = {zone: float(hours) for zone, hours in re.findall(r"([A-Z]+)(\S+)", VOCABULARY["words"]["zones"])}  # else UTC
-POINTED = re.compile(r"(?<=[ T])(\d{1,2})\.(\d{2})\.(\d{2})")  # a time of day with points, after a date
+POINTED = re.compile(  # a time of day after a date: 10.05.00, and _10-05-00
+    r"(?:(?<=[ T])(?=\d+\.)|(?<=\d[ T_]))(\d{1,2})[.-](\d{2})[.-](\d{2})"
+)
 NO_YEAR = "1972"  # a leap year that stands for none
 YEARLESS = re.compile(r"(\d{1,2})[-/.]\s?(\d{1,2})\.?(?=\s+\d{1,2}:\d\d)")
 BETWEEN = re.compile(r"(?<=\d),?\s+(?![apAP][mM])[a-zA-ZÀ-ÿ]{1,3}\.?\s+(?=\d{1,2}:\d\d)")  # klo, kl., um, at, à
@@ -178,7 +180,9 @@ def tests_of(source: Source) -> list[Source]:
     words = {n: np.array([*map(str, source.cells[n])]) for n in ids if each}
     words = {n: w for n, w in words.items() if 1 < len({*w.tolist()}) <= MACHINES}
     clock = _guessed_clock(source) if words else None
-    for name, of in words.items() if clock is not None and not (np.diff(clock.seconds) > 0).all() else ():
+    if clock is not None and (np.diff(clock.seconds) > 0).all():  # only of what takes turns: sensor_id
+        words = {n: w for n, w in words.items() if "id" in tokens(n) and 2 * np.sum(w[1:] != w[:-1]) > w.size}
+    for name, of in words.items() if clock is not None else ():
         rows = [np.flatnonzero(of == word) for word in dict.fromkeys(of.tolist())]
         times = [clock.seconds[r] for r in rows] if clock else []
         enough = all(t.size >= FEWEST for t in times) or all(np.array_equal(t, times[0]) for t in times)
@@ -602,7 +606,7 @@ def _numeric(source: Source) -> Clock | None:
     if candidates or TIME in by_name:
         return _scaled(source, candidates[0] if candidates else TIME)
     first = numeric[0] if source.unnamed and numeric else ""
-    if first and (rises(source, first) or _since_1970(source, first)):
+    if first and (rises(source, first) or _since_1970(source, first) or _starts_anew(source.numbers(first))):
         return _scaled(source, first)
     plain = [c for c in numeric if rises(source, c) and unit_of(source.units[c]) in ("", *TIME_UNITS)]
     cells = {c: source.numbers(c).tobytes() for c in plain}
@@ -617,6 +621,15 @@ def rises(source: Source, column: str) -> bool:
         return False
     finite = source.finite(column)
     return finite.size > 2 and bool((np.diff(finite) >= 0).all()) and bool(finite[-1] > finite[0])
+
+
+def _starts_anew(values: Array) -> bool:
+    """Does it rise in even steps but for a few falls to where it began, as a count since the start?"""
+    step = np.diff(values)
+    usual, back = float(np.median(step)), step < 0
+    near = np.abs(values[1:][back] - values[0]) < usual
+    even = np.abs(step[~back] - usual) < usual / 2
+    return bool(0 < FEWEST * back.sum() <= values.size and near.all() and even.all())
 
 
 def _unit_of_time(source: Source, column: str) -> str:

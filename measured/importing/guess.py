@@ -18,6 +18,7 @@ from measured.headers.cells import is_unit, unit_of
 from measured.headers.words import (
     BATTERY,
     CABINET,
+    CONVERTED,
     EXTREME,
     INLET,
     INSTRUMENT,
@@ -82,6 +83,7 @@ ROOM_C = (-50.0, 120.0)  # degC at which machines are started, in the cold and i
 ANGLE = re.compile(r"(?i)theta(?:[_ ]?[a-z]{0,2}|[_ ]?(?:mech|elec|el|rot))$")  # of a rotor, rather than a temperature
 OMEGA = re.compile(r"(?<=\.)w$|^w(?=$|_(?:m|r|mot|rotor|shaft|el)$)")  # beside a torque
 PARTNERS = {"v": ("i", "voltage"), "i": ("v", "current"), "current": ("voltage", "current")}  # dc.v beside dc.i
+SUFFIX = re.compile(r"_[a-z]{1,2}$")  # of a header, with its unit
 HEATER = re.compile(r"[QH](\d)")  # beside T of the same number
 LOAD = re.compile(r"T_?(?:load|last|mech|em|brake|shaft)")  # of a torque, where its readings are no temperature's
 AXES = ({"id", "iq"}, {"ialpha", "ibeta"})  # components whose squares add up to the current's
@@ -121,6 +123,8 @@ WHOLE = "names no part: the winding?"
 BY_LETTERS = "by its letters alone"
 HARDLY = "hardly warms: taken as the room"
 SEVERAL = "of the first of several machines, by their numbers?"
+OF_ROWS = "a number that names a row"
+MIXED = "its rows are of several"
 NUMBERED_MACHINE = "of one of several machines, by its number: a file of each?"
 UNKNOWN = "unknown"  # of a unit
 RELATIVE = "relative to a nominal"
@@ -128,6 +132,7 @@ OF_WHAT = "a share, by its unit alone: of what?"
 BY_READINGS = "a temperature, by its readings alone"
 FACTORS = ("current", "voltage", "torque", "speed")
 PASSES = "a product of other columns: it passes through"
+ONE_SIDE = "of one side of a converter, by its name: what is lost in it is the heat"
 NO_UNIT = "no unit"
 FUNCTION = "made of other columns"
 OF_SENSOR = "of a sensor"
@@ -151,14 +156,7 @@ FULL = (100.0, 255.0, 1023.0, 4095.0)  # of a fan, a pump or a heater that was o
 PERCENT = 130.0  # of a load, at most
 MANUAL = "left out by hand"
 OF_USER = "the user"  # how a column was told that the user placed
-CERTAIN = (
-    "a set point, not a reading",
-    "a number that names a row",
-    MANUAL,
-    FUNCTION,
-    OF_SUPPLY,
-    "--set gives it",
-)  # nothing is lost
+CERTAIN = ("a set point, not a reading", OF_ROWS, MANUAL, FUNCTION, OF_SUPPLY, "--set gives it")  # nothing is lost
 REMARK_WORDS = READ | SETPOINT | frozenset().union(*QUANTITY.values(), *ROLES.values())  # in brackets no unit
 TURNING = ("speed", "torque")  # of a machine
 ELSEWHERE = frozenset({"resistance", "back_emf", "time", "fraction"})  # units that no plain column is guessed from
@@ -203,7 +201,7 @@ def guesses(source: Source, clock: Sequence[str], target: Target) -> list[Guess]
     for i, g in enumerate(every):  # a component has an input of its own: the current is the root sum square of both
         if g.feeds and (axis := axis_of(source.labels[g.column])) in both:
             every[i] = replace(g, feeds=f"{axis}_A")
-    every = _with_switches(source, _products(source, _with_speed(source, every, target), target))
+    every = _with_switches(source, _of_converter(source, _products(source, _with_speed(source, every, target), target)))
     every = _quickest(source, every, target)
     return _of_one(source, single(every if kelvin else _in_fahrenheit(source, every), target, source.labels))
 
@@ -211,8 +209,7 @@ def guesses(source: Source, clock: Sequence[str], target: Target) -> list[Guess]
 def _by_readings(source: Source, every: list[Guess], target: Target) -> list[Guess]:
     """With columns as temperatures whose readings are like those of the others, where no unit says what they are."""
     hot = [g for g in every if g.quantity == "temperature" and not is_setpoint(source.labels[g.column])]
-    firsts = [v[np.isfinite(v)][:FIRST_ROWS] for g in hot for v in [in_memory(source, g)]]
-    starts = [float(np.median(v)) for v in firsts if v.size]
+    starts = [float(np.median(v[:FIRST_ROWS])) for g in hot if (v := readings_in_memory(source, g)).size]
     every = [_read_as(source, g, starts, target) if g.doubt == UNTOLD or g.why == "name" else g for g in every]
     series = {_stem(source.labels[g.column]): source.finite(g.column) for g in every if g.why in ("readings", "values")}
     for i, g in enumerate(every):  # the others of a row of numbered ones, which jump, or hardly move
@@ -322,14 +319,19 @@ def _products(source: Source, every: list[Guess], target: Target) -> list[Guess]
     factors = {g.column: source.numbers(g.column) for g in every if g.feeds and g.quantity in FACTORS}
     if not any(g.feeds and g.quantity == "speed" for g in every):
         return every
-    return [
-        g.without(PASSES)
-        if g.quantity == "power"
-        and g.feeds not in target.inputs
-        and is_product(source.numbers(g.column), [*factors.values()])
-        else g
-        for g in every
-    ]
+    free = [g.column for g in every if g.quantity == "power" and g.feeds not in target.inputs]
+    products = {c for c in free if is_product(source.numbers(c), [*factors.values()])}
+    return [g.without(PASSES) if g.column in products else g for g in every]
+
+
+def _of_converter(source: Source, every: list[Guess]) -> list[Guess]:
+    """With a doubt at powers of a converter where both sides and no loss were recorded."""
+    words = {g.column: {*tokens(source.labels[g.column])} for g in every if g.quantity == "power"}
+    both = all(any(of & side for of in words.values()) for side in CONVERTED)
+    if not both or any(of & LOSS for of in words.values()):
+        return every
+    sides = {c for c, of in words.items() if of & frozenset().union(*CONVERTED)}
+    return [g.also(ONE_SIDE) if g.column in sides and g.feeds else g for g in every]
 
 
 def _with_speed(source: Source, every: list[Guess], target: Target) -> list[Guess]:
@@ -356,7 +358,11 @@ def _with_switches(source: Source, every: list[Guess]) -> list[Guess]:
 
 
 def _of_one(source: Source, every: list[Guess]) -> list[Guess]:
-    """Of the first machine, and a doubt, where speeds differ by a number alone; a doubt at all that are numbered."""
+    """Of the first machine, and a doubt, where speeds differ by a number alone; a doubt at all that are numbered, and
+    where a number in every row names one of several."""
+    ids = {g.column: source.numbers(g.column) for g in every if g.doubt == OF_ROWS}
+    for n in (n for n, of in ids.items() if np.unique(of).size < STATES and np.mean(np.diff(of) != 0) > FALLING):
+        every = [g.also(f"{MIXED} '{n}'") if g.place else g for g in every]
     words = {g.column: itertools.pairwise(tokens(source.labels[g.column])) for g in every if g.place}
     numbers = {c: n for c, pairs in words.items() for word, n in pairs if word in MACHINE and n.isdigit()}
     if len({*numbers.values()}) > 1:
@@ -441,7 +447,8 @@ def guess(source: Source, column: str, target: Target) -> Guess:
     if not (unit_text or quantities_of(label)) and "load" in tokens(label):
         label = f"{label} share"
     unit = unit_of(unit_text) or _called_unit(label)
-    quantity, why, doubt = _by_values(source, column) if source.unnamed and not unit else _quantity(label, unit, target)
+    by_values = source.unnamed and not unit
+    quantity, why, doubt = _by_values(source, column, target) if by_values else _quantity(label, unit, target)
     if not quantity:
         return Guess(column, "", doubt="a clock? say so: time [s]" if _counts_on(source, column) else UNTOLD)
     values = source.numbers(column)
@@ -486,6 +493,7 @@ def guess(source: Source, column: str, target: Target) -> Guess:
 def _by_partner(source: Source, column: str) -> str:
     """Its name, with voltage or current for what stands where another has the word or the letter of the other."""
     words = [word.lower() for word in WORD.findall(source.labels[column])]
+    ends_united = any(source.units[c] and SUFFIX.search(c) for c in source.cells)  # temp_c beside core_v
     if not PARTNERS.keys() & {*words}:
         return source.labels[column]
     others = {tuple(map(str.lower, WORD.findall(label))) for label in source.labels.values()}
@@ -493,20 +501,17 @@ def _by_partner(source: Source, column: str) -> str:
         partner, meaning = PARTNERS.get(word, ("", ""))
         rest = [*words[:i], *words[i + 1 :]]
         phases = any((*words[:i], phase, *words[i + 1 :]) in others for phase in "uw")
-        if (*words[:i], partner, *words[i + 1 :]) in others and not (phases or quantities_of(" ".join(rest))):
+        volts = ends_united and source.labels[column][-2:] == "_v" and i == len(words) - 1 > 0
+        paired = volts or (*words[:i], partner, *words[i + 1 :]) in others
+        if paired and not (phases or quantities_of(" ".join(rest))):
             return " ".join([*rest, meaning])
     return source.labels[column]
 
 
 def _cold_start_outliers(source: Source, every: list[Guess], target: Target) -> list[Guess]:
     """With a doubt at what is warm where all others start alike, as what is not of a machine at rest."""
-    starts = {
-        g.column: float(v[np.isfinite(v)][0])
-        for g in every
-        if g.quantity == "temperature" and (g.place or not g.used) and not g.doubt.startswith(SAME)
-        for v in [in_memory(source, g)]
-        if np.isfinite(v).any()
-    }
+    hot = [g for g in every if g.quantity == "temperature" and (g.place or not g.used) and not g.doubt.startswith(SAME)]
+    starts = {g.column: float(v[0]) for g in hot if (v := readings_in_memory(source, g)).size}
     usual = float(np.median([*starts.values()])) if starts else 0.0
     odd = {c for c, start in starts.items() if abs(start - usual) > START_K}
     odd -= {c for c in odd if roles_of(source.labels[c])[:1] == [Role.AMBIENT] or is_spoken(source.labels[c], INLET)}
@@ -518,16 +523,8 @@ def _cold_start_outliers(source: Source, every: list[Guess], target: Target) -> 
         torque = Guess("", "torque", "N*m", why="readings", doubt=AS_TORQUE)
         odd -= loads
         every = [_fed(replace(torque, column=c), c, target) if (c := g.column) in loads else g for g in every]
-    return [
-        replace(
-            g,
-            doubt=g.doubt
-            or f"starts at {starts[g.column]:.3g} degC, all others near {usual:.3g}: is it of this machine?",
-        )
-        if g.column in odd
-        else g
-        for g in every
-    ]
+    doubts = {c: f"starts at {starts[c]:.3g} degC, all others near {usual:.3g}: is it of this machine?" for c in odd}
+    return [replace(g, doubt=g.doubt or doubts.get(g.column, "")) for g in every]
 
 
 def _left_out(source: Source, column: str) -> str:
@@ -567,14 +564,14 @@ def _left_out(source: Source, column: str) -> str:
     if (odd := words & (NOTHING | RATIO if unit == "%" else NOTHING)) and unit in WEAK and not switched:
         return f"'{sorted(odd)[0]}' is nothing a model reads"
     identifies = "id" in words and not unit_text and bool((values[np.isfinite(values)] % 1 == 0).all())
-    identifies &= _counts_on(source, column) or {*values} == {values[0]} - {0.0}
-    return "a number that names a row" if identifies else ""
+    of_device = words > {"id"} and not any(axis_of(other) == "iq" for other in source.labels.values())  # sensor_id
+    identifies &= of_device or _counts_on(source, column) or {*values} == {values[0]} - {0.0}
+    return OF_ROWS if identifies else ""
 
 
 def _impossible(source: Source, g: Guess) -> str:
     """Why its readings cannot be what the name says, "" where they can: one bad column costs one column."""
-    values = in_memory(source, g)
-    finite = values[np.isfinite(values)]
+    finite = readings_in_memory(source, g)
     low, high = (COLDEST, HOTTEST) if g.quantity == "temperature" else (-LARGEST, LARGEST)
     if not finite.size:
         return CODES_ALONE
@@ -590,7 +587,7 @@ def _in_fahrenheit(source: Source, every: list[Guess]) -> list[Guess]:
     if max(sizes, default=SCALED) < SCALED and not any(source.units[column] for column in hot):
         small = f"never beyond {SCALED:g} degC: {ELSE}"
         return [replace(g, doubt=small) if g.column in hot and g.used else g for g in every]
-    starts = {c: v[0] for c, g in hot.items() if (v := (r := in_memory(source, g))[np.isfinite(r)]).size}
+    starts = {c: v[0] for c, g in hot.items() if (v := readings_in_memory(source, g)).size}
     rooms = [c for c in starts if Role.AMBIENT in roles_of(source.labels[c])[:1]]
     alike = np.ptp([*starts.values()] or [ALIKE_F, 0.0]) < ALIKE_F
     alike &= len(starts) > 1 or not any(source.units[c] for c in hot)
@@ -664,15 +661,15 @@ def _called_unit(label: str) -> str:
     return unit if any(unit in QUANTITIES[q].units for q in FIRST) else ""
 
 
-def _by_values(source: Source, column: str) -> tuple[str, str, str]:
-    """Smooth readings of a file without names that can hardly be anything but temperatures."""
+def _by_values(source: Source, column: str, target: Target) -> tuple[str, str, str]:
+    """Smooth readings of a file without names that can hardly be anything but temperatures, or are in another run."""
     values = source.finite(column)
     low, high = float(np.min(values)), float(np.max(values))
     absolute = KELVIN[0] < float(np.median(values)) < KELVIN[1]
     different = np.unique(values).size  # states are few, and whole numbers
     many = different > 0.1 * values.size or (different > LEAST and bool((values % 1 != 0).any()))
     celsius = UNNAMED[0] < low and high < UNNAMED[1] and many
-    if not (is_smooth(values) and (absolute or celsius)):
+    if not (is_smooth(values) and (absolute or celsius)) and source.labels[column] not in target.places_by_header:
         return "", "", ""
     return "temperature", "values", f"no name: {BY_READINGS}"
 
@@ -740,15 +737,19 @@ def single(guesses: list[Guess], target: Target, labels: Mapping[str, str]) -> l
     """One column per boundary and per input; of several readings go before set points, the first before the rest."""
     owner: dict[str, str] = {}
     out = {g.column: g for g in guesses}
+    words_of_parts = {word for g in guesses if g.place for word in tokens(labels[g.column])}
+    devices = {w for w in words_of_parts if is_unknown(w) or w in INSTRUMENT}  # the gpu's power heats the gpu
 
     def order(g: Guess) -> tuple[int, ...]:
         words = {*tokens(g.column), *tokens(labels[g.column])}
         inlet = bool(g.place) and not is_spoken(g.column, INLET)
         mixed = g.place == "ambient" and len(roles_of(g.column)) > 1  # the air of a frame
         of_machine = is_spoken(labels[g.column], MACHINE)  # before a cadence, and a battery
-        later = {"current": bool(words & (SUPPLY | MEAN)), "power": not words & LOSS, "speed": not of_machine}.get(
-            g.quantity, mixed
-        )
+        later = {
+            "current": bool(words & (SUPPLY | MEAN)),
+            "power": 2 * (not words & LOSS) + (not words & devices),
+            "speed": not of_machine,
+        }.get(g.quantity, mixed)
         other = bool(g.place) and g.place not in words
         outdoors = bool(g.place and (is_within(g.column, OUTER) or is_spoken(g.column, INSTRUMENT)))  # no room of it
         more = len(words) * bool(g.place)  # "T room" is the room before "T chamber wall" is
@@ -824,6 +825,12 @@ def in_memory(source: Source, g: Guess) -> Array:
     """Readings in the unit of memory, without a logger's codes."""
     values = source.numbers(g.column)
     return converted(_without_codes(values) if g.quantity == "temperature" else values, g.quantity, g.unit)
+
+
+def readings_in_memory(source: Source, g: Guess) -> Array:
+    """Those of its rows that have one."""
+    values = in_memory(source, g)
+    return values[np.isfinite(values)]
 
 
 def _without_codes(values: Array) -> Array:

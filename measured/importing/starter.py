@@ -47,6 +47,7 @@ from measured.importing.guess import (
     Guess,
     in_memory,
     is_whole,
+    readings_in_memory,
 )
 from measured.importing.relations import names_of
 from measured.importing.source import Source
@@ -171,7 +172,7 @@ def of_machine(columns: Columns) -> Columns:
         return _without_exhaust(columns)
     if len({g.column for _, g in parts}) < 2 or any(g.why == "values" for _, g, place in every):
         return columns
-    starts = [float(v[np.isfinite(v)][0]) for v in (in_memory(*part) for part in parts) if np.isfinite(v).any()]
+    starts = [float(v[0]) for v in (readings_in_memory(*part) for part in parts) if v.size]
     coldest, most = float(np.median(starts)) + COLD_K, STILL * max(rise(*part) for part in parts)
     shares = [tokens(s.labels[g.column]) for s, g in columns if g.feeds and g.quantity == "share"]
     of_heaters = {word for words in shares for word in words if word.isdigit()}
@@ -266,8 +267,7 @@ def _name(label: str) -> str:
 
 def rise(source: Source, g: Guess) -> float:
     """Largest reading less the first (K)."""
-    values = in_memory(source, g)
-    finite = values[np.isfinite(values)]
+    finite = readings_in_memory(source, g)
     return float(np.max(finite) - finite[0])
 
 

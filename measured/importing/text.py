@@ -60,6 +60,7 @@ STAMP = re.compile(
     rf"^(?:[A-Z]+:\w*:|(?={_DAY}[-@])|(?={_DAY} {_TIME}{_DASH}))({_DAY})[-@ ](\d{{1,2}}:\d\d:)(\d+)([.\d]*)({_DASH})?",
     re.MULTILINE,
 )
+REMARK = re.compile(r"^#[^,;\t\n]*[^,;\s]", re.MULTILINE)  # that may come again between the rows
 FORTRAN = re.compile(r"(?<=[.\d]\d)[Dd](?=[-+]\d\d\b)")  # 2.4D+01
 KEYED = re.compile(r"\s*([^\W\d][^:=,;\t]*?)\s*[:=]\s*(\S.*)")
 BOTH_SIGNS = re.compile(r"(?<![\d.:/-])\d+\.\d+(?![\d.:/-])")  # a number with a point, which is not a date
@@ -98,6 +99,9 @@ def text_table(file: Path) -> tuple[Layout, Columns, list[str], float | None]:
     """
     lines, notes = Lines(file, encoding_of(lambda: chunks(file, BLOCK), file)), list[str]()
     start = "".join(itertools.islice(lines, SAMPLE_LINES))[:10_000]
+    if again := {r for r, n in Counter(REMARK.findall(start)).items() if n > 2 and re.search(r"[,;\t]", start)}:
+        lines = lines.edited(lambda line: "" if line.strip() in again else line)
+        start = "".join(itertools.islice(lines, SAMPLE_LINES))[:10_000]
     if 3 * sum(not line.strip() for line in start.splitlines()) > start.count("\n"):  # between every two rows
         lines = lines.edited(lambda line: line if line.strip() else "")
     if FORTRAN.search(start):

@@ -1,9 +1,12 @@
 """What readings say of each other, with truths of our own: sensors with noise, and columns that were made of them."""
 
+import re
+
 import numpy as np
 import pytest
 from scipy.signal import lfilter
 
+from measured.headers.cells import split_unit
 from measured.importing.aligned import Recording, shift
 from measured.importing.aloud import first_lines, short_lines
 from measured.importing.case_files import read_runs
@@ -254,3 +257,95 @@ def test_names_may_begin_with_numbers_that_count_on(tmp_path):
     columns = (WARM + np.cos(k * K) for k in range(1, 5))
     read = told(tmp_path, "1,2,3,4,Oven,Time_(s)", *columns, WARM, 60 * K)
     assert [*read] == ["1", "2", "3", "4", "Oven"]
+
+
+def runs_of_text(tmp_path, text):
+    """Clock and guesses of every run of a file."""
+    (tmp_path / "a.csv").write_text(text)
+    runs = read_runs(tmp_path / "a.csv")
+    target = first_model(runs, {}).target
+    return [(clock, {g.column: g for g in guesses(source, clock.columns, target)}) for source, clock in runs]
+
+
+@pytest.mark.parametrize(("dc", "ac"), [("P DC [W]", "P AC [W]"), ("Pdc [kW]", "Pac [kW]"), ("p_dc [W]", "p_ac [W]")])
+def test_what_a_converter_loses_heats_it(tmp_path, dc, ac):
+    """Whatever currents were recorded beside its powers, and where one side is held."""
+    read = told(
+        tmp_path, f"t [s],T_igbt,{ac},{dc},I AC [A]", K, WARM, 0 * K + 5000, 5000 + LEVEL, LEVEL / 7 + np.cos(K)
+    )
+    assert read[f"loss {dc} - {ac}"] == ("power", split_unit(dc)[1], "power_W")
+    assert read[dc][2] != "power_W"
+
+
+def test_powers_of_a_converter_of_which_no_loss_can_be_made_are_doubted(tmp_path):
+    rows = zip(K, WARM, 8000 + LEVEL, 4000 + LEVEL, 4200 + LEVEL)
+    text = "\n".join(["t [s],T_top,ACPower,PowerDC1,PowerDC2", *(",".join(f"{c:g}" for c in row) for row in rows)])
+    [(_, read)] = runs_of_text(tmp_path, text)
+    assert read["ACPower"].doubt.endswith("what is lost in it is the heat")
+    (tmp_path / "b.csv").write_text(text)
+    one = Recording(*read_runs(tmp_path / "b.csv")[0], [*read.values()])
+    assert any(line.startswith("'ACPower': of one side") for line in first_lines([Draft("b", (one,))]))
+
+
+def test_the_power_that_shares_a_part_s_name_heats_it(tmp_path):
+    """No other device's, whichever stands first."""
+    read = told(tmp_path, "t [s],cpu_power_w,gpu_core_temp_c,gpu_power_w", K, LEVEL / 2 + K, WARM, LEVEL)
+    assert (read["gpu_power_w"][2], read["cpu_power_w"][2]) == ("power_W", "cpu_power_W")
+
+
+@pytest.mark.parametrize(
+    ("header", "quantity"),
+    [
+        ("t_s,temp_c,core_v", "voltage"),
+        ("t_s,temp_c,wdg_u,wdg_v,wdg_w", "temperature"),
+        ("t [s],T,core_v", "temperature"),
+    ],
+)
+def test_where_names_end_on_units_a_v_is_of_volts(tmp_path, header, quantity):
+    """But not of three phases, and not where units stand in brackets."""
+    hot = [WARM + np.cos(k * K) for k in range(len(header.split(",")) - 1)]
+    read = told(tmp_path, header, K, *hot[:-1], hot[-1] - 18 * (quantity == "voltage"))
+    assert {what for name, (what, _, _) in read.items() if re.search("_v$", name)} == {quantity}
+
+
+@pytest.mark.parametrize(
+    "stamp",
+    [
+        lambda s: f"2024-04-17_10-{s // 60:02d}-{s % 60:02d}",
+        lambda s: f"17.4.2024 10:{s // 60}:{s % 60}",
+        lambda s: f"10:{s // 60}:{s % 60}",
+        lambda s: f"17.4.2024,10:{s // 60}:{s % 60}",
+    ],
+)
+def test_an_hour_with_other_signs_and_without_noughts(tmp_path, stamp):
+    names = ("date", "time")[-stamp(0).count(",") - 1 :]
+    lines = [f"{stamp(7 * k)},{w:.2f}" for k, w in enumerate(WARM)]
+    [(clock, _)] = runs_of_text(tmp_path, "\n".join([",".join([*names, "T_winding [°C]"]), *lines]))
+    assert clock.seconds == pytest.approx(7 * K)
+    assert not clock.doubt
+
+
+def test_a_count_since_the_start_without_a_name_begins_anew_with_every_run(tmp_path):
+    """A run in which nothing moves has the columns of the others."""
+    runs = [(WARM, 22441), (0 * K[:30] + 30.69, 22450)]
+    lines = [f"{begin + 5001 * k},{w:.2f}" for hot, begin in runs for k, w in enumerate(hot)]
+    read = runs_of_text(tmp_path, "\n".join(lines))
+    assert [clock.end_s for clock, _ in read] == pytest.approx([5.001 * 59, 5.001 * 29])
+    assert all(columns["column 2"].place for _, columns in read)
+
+
+@pytest.mark.parametrize(("count", "tests"), [(60, 2), (30, 1)])
+def test_rows_of_sensors_in_turns_are_no_one_sensor_s(tmp_path, count, tests):
+    """A test of each where there are enough rows, else a doubt; a number of a device is no current."""
+    rows = [f"{k},{1 + k % 2},{w + 8 * (k % 2):.2f},{50 + k % 3}" for k, w in enumerate(WARM[:count])]
+    read = runs_of_text(tmp_path, "\n".join(["t [s],sensor_id,temperature_c,humidity", *rows]))
+    assert len(read) == tests
+    assert not any(columns["sensor_id"].used for _, columns in read)
+    assert (tests == 2) != ("of several 'sensor_id'" in read[0][1]["temperature_c"].doubt)
+
+
+def test_remarks_that_come_again_between_rows(tmp_path):
+    lines = [f"{t:g},{w:.2f}\n\n# skipped {1 + (t > 50):g} cycles\n# no reply" for t, w in zip(K, WARM)]
+    [(clock, read)] = runs_of_text(tmp_path, "\n".join(["# run of a bench", "t [s],T_winding [°C]", *lines]))
+    assert clock.seconds == pytest.approx(K)
+    assert read["T_winding [°C]"].place
