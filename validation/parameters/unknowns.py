@@ -320,7 +320,7 @@ def large_nuisances(case: Case) -> list[tuple[str, float, str, float]]:
 
 
 def strain_words(case: Case) -> str:
-    """That, to be said right after the answer; "" where nothing is strained."""
+    """That, said before a verdict, which rests on it, and right after a finding; "" where nothing is strained."""
     rows, times = large_nuisances(case), " times the usual deviation"
     each = [
         f"{_value_words(name, value, unit)} ({abs(z):.1f}{times * (i == 0)})"

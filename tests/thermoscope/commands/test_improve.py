@@ -15,6 +15,7 @@ from thermoscope.case_folder.folder import load_case
 from thermoscope.case_folder.history import load_history
 from thermoscope.cli import whole_app
 from thermoscope.commands.explain import improve as command
+from validation.inference.decide import SURE
 from validation.inference.result import Candidate, Diagnosis, Odds
 from validation.revision import improvement
 from validation.revision.improvement import offered, singletons
@@ -132,17 +133,12 @@ def test_what_is_sure_is_added_without_asking_but_no_lasting_fault(found, name):
     assert singletons(found, offered(found)) == name
 
 
-def test_one_event_with_ends_a_little_apart_is_as_sure_as_both_together():
-    lid, late = (
-        replace(row(f"convection.constant@yoke in b:{span}s", "named"), probability=0.4)
-        for span in ("100-300", "120-300")
-    )
-    each = answer("named", lid, late).odds
-    found = replace(answer("named", lid), candidates=(lid, late), odds=each)
-    assert singletons(found, offered(found)) == lid.effect
-    assert singletons(answer("named", lid), (lid,)) is None
-    both = replace(found, odds=(Odds("both", (lid.effect, late.effect), 0.4),))  # a set with both counts once
-    assert singletons(both, (lid,)) is None
+def test_what_stands_alone_is_added_if_it_is_likelier_than_not_and_one_of_several_if_it_is_sure():
+    for verdict, others, least in (("named", (), 0.5), ("group", (row("iron@yoke", "group"),), SURE)):
+        for probability in (least - 0.01, least + 0.01):
+            first = replace(row("mass@yoke", verdict), probability=probability)
+            chosen = singletons(answer(verdict, first, *others), (first, *others))
+            assert chosen == (first.effect if probability > least else None)
 
 
 @pytest.mark.parametrize(("word", "name"), [("2\n", "iron@yoke"), ("\n", None), ("", None), ("3\n", None)])

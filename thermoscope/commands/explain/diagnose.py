@@ -140,7 +140,7 @@ def diagnosis_summary(document: Mapping[str, Any], called: str) -> Summary:
     """The verdict; of a wrong base only that, for it comes first.  called : what the user calls the case"""
     plain = document["verdict"] == "adequate" and not document["revision"]  # never calibrated
     unfitted = "That is of the model calibrated to these tests, not as it stands" if plain else ""
-    clauses = sentences([*filter(None, (document["words"], unfitted, document.get("strained")))])
+    clauses = sentences([*filter(None, (document.get("strained"), document["words"], unfitted))])
     sentence, case = " ".join(clauses), quote(called)
     bases, steps, budgets = (document.get(key, []) for key in ("bases", "sampling", "error_budget"))
     if any(h["declared"] and h["excluded"] for h in bases):

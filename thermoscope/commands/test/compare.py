@@ -116,7 +116,7 @@ def repeated(case: MeasuredCase) -> list[dict[str, Any]]:
 def comparison_summary(document: Mapping[str, Any], called: str, doubts: str = "") -> Summary:
     """How many sensors are over, which, and what the rest looks like.
 
-    called : what the user calls the case;  doubts : of its recordings, before the verdict
+    called : what the user calls the case;  doubts : of its recordings
     """
     from thermoscope.case_folder.stored_comparison import yardstick_words
 
@@ -134,8 +134,8 @@ def comparison_summary(document: Mapping[str, Any], called: str, doubts: str = "
     ]
     more = f"--why, --json FILE; thermoscope show report {quote(called)}"
     worse = document.get("yardstick", {}).get("warning", "")
-    before, verdict = [worse, doubts], [document["words"], document.get("strained", "")]
-    words = "\n".join(filter(None, (" ".join(filter(None, some)) for some in (before, verdict))))
+    before = " ".join(filter(None, (worse, document.get("strained", ""), doubts)))
+    words = "\n".join(filter(None, (before, document["words"])))
     every = [*rest, *budget(budgets, steps), bands_table(document.get("bands", ()))]
     return Summary(words, parts, more, every)
 
