@@ -6,7 +6,9 @@ import numpy as np
 import pytest
 from playground import Truth, network
 
+from lumped.integration.compiled import compiled
 from lumped.integration.signals import Signals
+from lumped.integration.simulate import Record
 from lumped.model.build import bare_network, node_link
 from lumped.model.network import Parameter
 from lumped.transfer.exchanger import Exchanger, Flow
@@ -94,6 +96,22 @@ def test_no_exponent_turns_a_film_into_a_heat_pump(exponent):
     for moved in (-0.25, 0.25):  # the bounds of a fit: 2.5 deviations
         film = difference**exponent + moved * np.interp(difference, bend.difference, bend.value)
         assert np.all(film > 0.0)
+
+
+@pytest.mark.parametrize(("exponent", "holds"), [(0.0, 1), (0.25, 0), (-0.25, 0)])
+def test_a_blocked_film_with_another_exponent_promises_no_maximum_principle(exponent, holds):
+    """Of a film that is blocked to a twentieth its exponent takes more than there is left, near its air: a run that has
+    to keep the principle there takes ever smaller steps, without end."""
+    net = bare_network("duct", {"wall": 100.0, "duct": 6.0}, ("air",))
+    wall = node_link(net, "wall", "film", "wall", "duct", WithTemperature(Fixed(2.0), Power(0.25)))
+    film = node_link(net, "film", "film", "duct", "air", WithTemperature(Fixed(3.0), Power(0.5)))
+    own = tuple(Parameter(x.name, ((x.name, 1.0),), prior_sd=0.3) for x in (wall, film))
+    net, _ = with_model_form(replace(net, links=[wall, film], parameters=own), {}, {})
+    net = replace(net, parameters=(*net.parameters, Parameter("blockage", (("film", 1.0),), prior_sd=0.3)))
+    record, time = {"wall": 25.0, "duct": 25.0}, np.arange(0.0, 3600.0, 60.0)
+    air = np.full(time.size, 27.0)
+    core = compiled(net, Record(time, {}, {"air": air}, record), {"film^dT": exponent, "blockage": 0.05})
+    assert core.control.principle[0] == holds
 
 
 @pytest.mark.parametrize(("kind", "counts"), [("still", 1), ("switched", 2), ("stepped", 3), ("ramped", 3)])
