@@ -85,7 +85,8 @@ def aic(evidence: Evidence, w: White, drop: Array) -> tuple[str, bool]:
     """The best of five refits under white noise."""
     plain = replace(evidence, fit=replace(evidence.fit, noise=WhiteNoise(w.channels), error=None))
     none = laplace(plain, Weighed()).fit
-    fits = {k: laplace(plain, Weighed((int(k),))).fit for k in np.argsort(-drop)[:5]}
+    refits = {k: laplace(plain, Weighed((int(k),))).fit for k in np.argsort(-drop)[:5]}
+    fits = {k: fit for k, fit in refits.items() if fit is not None}  # with some the model runs away
     best = min(fits, key=lambda k: fits[k].objective)
     return evidence.names[int(best)], bool(2.0 * (none.objective - fits[best].objective) > AIC)
 
