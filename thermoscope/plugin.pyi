@@ -243,6 +243,7 @@ from validation.parameters.unknowns import (
     standing as standing,
     standing_reference as standing_reference,
     start_name as start_name,
+    strain_words as strain_words,
     to_coordinate as to_coordinate,
     to_value as to_value,
     value_words as value_words,

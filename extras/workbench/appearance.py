@@ -29,7 +29,8 @@ class Appearance:
 def appearance_of(folder: th.Folder) -> Appearance:
     """Run the model on every test, beside the plain models."""
     compared = folder.compared  # first: what it finds serves the curves
-    errors = {**compared.document(), **th.yardstick_document(folder.yardstick, compared, folder.case)}
+    plain = th.yardstick_document(folder.yardstick, compared, folder.case)
+    errors = {**compared.document(), **plain, "strained": th.strain_words(folder.case)}
     return Appearance(errors, {test.name: th.comparison_of(folder, test) for test in folder.case.tests})
 
 

@@ -99,10 +99,8 @@ class Display:
         self.state.revision, self.state.steps = last.number, rows.steps(history, case)
         self.state.can_undo = len(effective(history)) > 1
         self.state.rms, self.state.floor = f"{errors['rmse_K']:.2f}", f"{errors['floor_K']:.2f}"
-        self.state.warning, self.state.plain = (
-            errors.get("yardstick", {}).get("warning", ""),
-            th.yardstick_words(errors),
-        )
+        first = errors.get("yardstick", {}).get("warning"), errors.get("strained")
+        self.state.warning, self.state.plain = " ".join(filter(None, first)), th.yardstick_words(errors)
         (test, sensor), scale = rows.largest(look), self._scale
         ever = [error for r in history.revisions for pair in r.rmse_K.values() for error in pair]
         self._scale = max(test, scale[0], *ever), max(sensor, scale[1])

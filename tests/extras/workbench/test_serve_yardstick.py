@@ -30,5 +30,6 @@ def test_the_page_says_of_plain_models_what_compare_says(folder):
     assert shown.state.plain.startswith("Held out ")
     assert shown.state.plain == comparison_summary(document, "three").parts[0]
     worse = {**look.errors["yardstick"], "warning": "Worse than no model at all."}
-    shown.model(folder.history, replace(look, errors={**look.errors, "yardstick": worse}))
-    assert shown.state.warning == "Worse than no model at all."
+    moved = "The fit moved much."
+    shown.model(folder.history, replace(look, errors={**look.errors, "yardstick": worse, "strained": moved}))
+    assert shown.state.warning == f"Worse than no model at all. {moved}"
