@@ -38,7 +38,10 @@ class Pattern:
 
     @cached_property
     def monotone(self) -> bool:
-        """Whether at a positive coefficient it only draws its nodes towards others: their maximum principle."""
+        """Whether at a positive coefficient it only draws its nodes towards others: their maximum principle. The error
+        of an exponent does not, which takes from a film as it adds to it."""
+        if np.min(getattr(self.law.temperature, "value", 0.0)) < 0.0:
+            return False
         P = np.zeros((self.row.size, int(self.cols.max(initial=0)) + 1))
         np.add.at(P, (self.to, self.cols), self.vals)
         diagonal = (np.arange(self.row.size), self.row)

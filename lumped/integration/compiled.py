@@ -213,12 +213,10 @@ def compiled(
 def control(
     network: Network, every: Assembly, m: Array, factors: Sequence[Array], precision: Precision = RUN
 ) -> Control:
-    """What a step has to pass. The maximum principle holds where every acting link has positive coefficients alone:
-    none is the error of an exponent, which takes from a film as it adds to it."""
+    """What a step has to pass. The maximum principle holds where every acting link has positive coefficients alone."""
     hidden = hidden_states(network)
     acts = [(p, x, f) for p, x, f in zip(every.patterns, m.tolist(), factors, strict=True) if x != 0.0 and not p.heats]
-    positive = all(np.min(getattr(p.law.temperature, "value", 0.0)) >= 0.0 and p.monotone for p, *_ in acts)
-    holds = not hidden.any() and positive and all(x * _extreme(f, x > 0.0) >= 0.0 for _, x, f in acts)
+    holds = not hidden.any() and all(p.monotone and x * _extreme(f, x > 0.0) >= 0.0 for p, x, f in acts)
     units, limits = state_units(network), np.array([precision.error_K, precision.error_share])
     visible, holding = (~hidden).astype(np.int64), np.array([holds], np.int64)
     return Control(units, visible, limits, holding, np.array([HOTTEST]), np.zeros(1, np.int64))

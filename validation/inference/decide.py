@@ -26,10 +26,10 @@ from validation.inference.hypotheses import (
     SHARPNESS,
     Weighed,
     best_first,
-    evidence_temper,
     inclusion,
     probabilities,
     singles_by_member,
+    weights,
 )
 from validation.inference.missing_heat import MissingHeat
 from validation.inference.result import Check, Verdict
@@ -252,13 +252,12 @@ def united_events(e: Evidence, hypotheses: Sequence[Weighed]) -> tuple[Weighed, 
     alike: dict[tuple[str, frozenset[int]], list[Weighed]] = {}
     for h in order:
         alike.setdefault((h.heat, frozenset(lead.get(k, k) for k in h.members)), []).append(h)
-    share, out = evidence_temper(hypotheses), []
+    weight, out = dict(zip(order, SHARPNESS * weights(order), strict=True)), []
     for (_, members), every in alike.items():
         one = next((h for h in every if members == {*h.members}), None)
         if one is not None:
-            weight = [SHARPNESS * (h.log_prior + h.nats / share) for h in every]
-            log_prior = float(logsumexp(weight)) / SHARPNESS - one.nats / share
-            out.append(replace(one, log_prior=log_prior))
+            more = float(logsumexp([weight[h] for h in every]) - weight[one]) / SHARPNESS
+            out.append(replace(one, log_prior=one.log_prior + more))
     return tuple(out)
 
 

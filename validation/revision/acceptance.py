@@ -160,7 +160,7 @@ def fold_prediction(fit: Fit, fold: Fold, fixed: Mapping[str, float], effects: C
     likely = fitted(fit.unknowns, fit.theta, fit.noise, parts)
     there = segments(fit.network, fold.predicted, {**values, **likely})
 
-    def nats(noise: Noise) -> float:
+    def nats(noise: Noise) -> float:  # its rows are made anew: kept for every fold, they would fill the memory
         return _log_density(replace(fit, noise=noise), _rows(fit, fold.fitted), _rows(fit, fold.predicted), there)
 
     values |= {name: likely[name] for name in causes.names} | dict.fromkeys(others.names, 0.0)
