@@ -1,7 +1,5 @@
 """Texts that others wrote, made safe for each kind of file. No writer relies on the rule that let a name in."""
 
-from __future__ import annotations
-
 import csv
 import io
 import re

@@ -4,8 +4,6 @@ A limit stands far above what people measure and far below what a computer of 8 
 by its environment variable.
 """
 
-from __future__ import annotations
-
 import os
 import time
 from dataclasses import dataclass

@@ -1,7 +1,5 @@
 """Machine files: the library, the families, and from a file's tables, or a STEP file, to a machine."""
 
-from __future__ import annotations
-
 import tomllib
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace

@@ -1,7 +1,5 @@
 """Structured meshes of boxes and rings with named parts: problems whose answer is known, and small examples."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from itertools import permutations
 

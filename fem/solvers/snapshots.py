@@ -4,8 +4,6 @@ A part's field is its mean plus shapes. The shapes are found in the part's own s
 its sides of contacts and films at nominal coefficients), so the separate pieces of one part are told apart too.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 

@@ -1,7 +1,5 @@
 """A machine: its parts, its fluids, its materials, and the sections others read."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path

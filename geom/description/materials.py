@@ -1,7 +1,5 @@
 """What things are made of: one table, every value with its source and spread."""
 
-from __future__ import annotations
-
 import tomllib
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace

@@ -1,7 +1,5 @@
 """A steady colour for every material, the same in CAD files and drawings."""
 
-from __future__ import annotations
-
 import colorsys
 import csv
 import hashlib

@@ -1,7 +1,5 @@
 """The library at a glance: what every shipped machine is, weighs and measures, how it is cooled, where it is from."""
 
-from __future__ import annotations
-
 import re
 from dataclasses import dataclass, replace
 from html import escape

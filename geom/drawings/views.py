@@ -1,7 +1,5 @@
 """The two sections of a machine as SVG shapes (mm, y downwards), from the profiles that are meshed."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 from functools import cached_property

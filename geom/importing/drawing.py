@@ -1,7 +1,5 @@
 """Drawings (.dxf): lines and arcs of every layer in metres around the machine's axis, and the loops they close."""
 
-from __future__ import annotations
-
 import cmath
 import itertools
 import math

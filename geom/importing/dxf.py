@@ -1,7 +1,5 @@
 """Cross-sections as drawings (.dxf), layers named by part: one slot or pole pitch, several, or the whole machine."""
 
-from __future__ import annotations
-
 import cmath
 import math
 import re

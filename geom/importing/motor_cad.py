@@ -1,7 +1,5 @@
 """Motor-CAD files (.mot, sections of key=value): machines with magnets or a cage, the rotor inside the stator."""
 
-from __future__ import annotations
-
 import cmath
 import math
 import re

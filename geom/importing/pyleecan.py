@@ -1,7 +1,5 @@
 """Machines of pyleecan (JSON): laminations, slots, holes, magnets, cage, windings; a class is a name in a table."""
 
-from __future__ import annotations
-
 import json
 import math
 from collections.abc import Iterator, Mapping

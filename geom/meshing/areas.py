@@ -1,7 +1,5 @@
 """Volumes, masses, film and contact areas of every part, from the prismatic description alone: no solids, no mesh."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 

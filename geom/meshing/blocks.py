@@ -5,8 +5,6 @@ a level where only the rotor changes does not cut the housing. A column is a sta
 of the plane: the flange over the slots is not cut by the slots.
 """
 
-from __future__ import annotations
-
 from collections import defaultdict
 from collections.abc import Sequence
 from dataclasses import dataclass

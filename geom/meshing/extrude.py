@@ -1,7 +1,5 @@
 """From triangles to tetrahedra: extrusion of every block, and the names of all faces."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Mapping, Sequence
 from itertools import pairwise
 

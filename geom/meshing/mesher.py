@@ -1,7 +1,5 @@
 """A machine's named mesh: partition the plane once, triangulate once, extrude."""
 
-from __future__ import annotations
-
 import hashlib
 from collections.abc import Sequence
 from dataclasses import dataclass, replace

@@ -4,8 +4,6 @@ Corners that should lie on another line miss it by a rounding error when the sha
 then leaves edges and slivers of 0.1 um, which no mesh survives; they are merged here.
 """
 
-from __future__ import annotations
-
 import numpy as np
 import shapely
 from numpy.typing import NDArray

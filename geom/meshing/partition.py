@@ -1,7 +1,5 @@
 """The plane partition: all profiles of a machine overlaid, every face labelled at every axial slab."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass
 

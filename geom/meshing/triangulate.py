@@ -3,8 +3,6 @@
 Netgen was measured first: it refines isotropically into 0.3 mm liners and needs ten times the points.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import pairwise

@@ -1,7 +1,5 @@
 """Voids that the outside does not reach: each must belong to a declared fluid."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

@@ -20,8 +20,6 @@ and the sections that machine files have besides (ratings, contacts, films, loss
 Closed voids between the solids become the fluid "air.inside".
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterable, Mapping
 from fnmatch import fnmatchcase
 from pathlib import Path

@@ -1,7 +1,5 @@
 """What a network is checked with while it is built: the rated losses and fluids of the machine, and draws."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from fem.solvers.solve import coupled, film_columns

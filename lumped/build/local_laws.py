@@ -4,8 +4,6 @@ A network's laws see means: radiation that of a face, copper loss that of a wind
 simplification, at the same operating point; the rest stays as the network settles.
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 
 import numpy as np

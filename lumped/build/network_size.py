@@ -1,7 +1,5 @@
 """A network as small as the wish allows: error against number of states, checked at points it has not seen."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import Any

@@ -4,8 +4,6 @@ Every cell is a node whose temperature is what leaves it: it receives m cp (T_be
 What a circuit carries from its inlet to its outlet is m cp (T_out - T_in) at every instant, exactly.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass, replace

@@ -1,7 +1,5 @@
 """Pressure along coolant paths, and the power that pumps and fans take."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Protocol

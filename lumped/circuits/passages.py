@@ -1,7 +1,5 @@
 """What oil passes besides channels of a jacket: a round bore, as of a hollow shaft, and nozzles above a face."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 

@@ -1,7 +1,5 @@
 """Shapes found once, kept by the content they belong to, and found again for nearby coefficients."""
 
-from __future__ import annotations
-
 import hashlib
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass

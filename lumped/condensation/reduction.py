@@ -5,8 +5,6 @@ compressed in the part's own energy. Contacts and films stay links of their own,
 one of them may change afterwards at no cost. This is the only file of the room that knows `fem`.
 """
 
-from __future__ import annotations
-
 import dataclasses
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace

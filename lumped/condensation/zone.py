@@ -1,7 +1,5 @@
 """A loss zone: a piece of a part whose loss may vary alone."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import dataclass
 

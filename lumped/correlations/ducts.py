@@ -1,7 +1,5 @@
 """Forced flow inside ducts, jackets and channels."""
 
-from __future__ import annotations
-
 import math
 
 from lumped.correlations.info import Info, checked

@@ -1,7 +1,5 @@
 """What a correlation says about its own answer."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass

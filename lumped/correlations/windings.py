@@ -1,7 +1,5 @@
 """The T-circuit of a hollow cylinder."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 

@@ -1,7 +1,5 @@
 """[circuits.NAME] of network.toml."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable
 
 from lumped.circuits.circuit import PER_M3S, Circuit, Cooler, Pass

@@ -1,7 +1,5 @@
 """Films of known surfaces in network.toml by correlation: still air, moving air and coolant, contacts."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import replace
 from functools import cache, partial

@@ -1,7 +1,5 @@
 """The laws of a link and of a stream in network.toml; correlations of known surfaces are in declarations/films.py."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import replace
 from functools import partial

@@ -1,7 +1,5 @@
 """Is the heat that was put in the heat that the losses declare?"""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import dataclass
 

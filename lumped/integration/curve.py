@@ -1,7 +1,5 @@
 """How an input factor runs between the samples, where the inputs are linear: as parabolas, as many as it needs."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterator, Mapping
 from typing import NamedTuple
 

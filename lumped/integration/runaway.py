@@ -1,7 +1,5 @@
 """What to say when temperatures leave all bounds: where, when, and which law feeds itself."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from geom.arrays import Array

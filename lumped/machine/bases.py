@@ -4,8 +4,6 @@ The input "on_NAME" is 1 while the machine stands on that base. Then its foot co
 the machine meets the surroundings as the face around it does.
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 

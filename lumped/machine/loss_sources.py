@@ -5,8 +5,6 @@ shares over parts, loss zones or mean places that sum to 1, and the keys of the 
 resolve stands for its part. Series-wound machines may give plain numbers instead, see settings.Losses.
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 
 import numpy as np

@@ -20,8 +20,6 @@ What comes out, for every family and for imported machines alike (the machine fi
                 "coolant.flow", "oil.flow", "h.oil", and "k.GROUP" for conductivities declared in [calibration]
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Mapping
 from dataclasses import replace
 

@@ -4,8 +4,6 @@
 fan = { h_W_m2K = 40, at_rpm = 1460 } }; the part's own fan stands in the place of what [fans.cowl] gives it.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import lru_cache

@@ -1,7 +1,5 @@
 """What calibration may move in a motor's network, each with its prior."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 

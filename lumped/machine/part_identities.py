@@ -1,7 +1,5 @@
 """What the parts, fluids and boundaries of a motor are: as declared, else by what they are made of."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable
 from dataclasses import replace
 

@@ -1,7 +1,5 @@
 """The thermal sections of a machine file, read into frozen settings: [contacts], [films], [losses], [fans]."""
 
-from __future__ import annotations
-
 import difflib
 from collections.abc import Mapping
 from dataclasses import dataclass, fields

@@ -5,8 +5,6 @@ for every part under nozzles. The inlet is boundary "oil", the flow the input "o
 The end space is what the oil leaves as: its node is as warm as the oil that runs off.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace

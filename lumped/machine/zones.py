@@ -1,7 +1,5 @@
 """Loss zones of a motor: teeth and back of a slotted core, halves of a slot, shoe and body of a pole, field coils."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 
 import numpy as np

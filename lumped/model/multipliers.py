@@ -1,7 +1,5 @@
 """What the parameters do: multipliers on links, sources and capacity groups, and their derivatives."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from math import prod
 

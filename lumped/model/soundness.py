@@ -1,7 +1,5 @@
 """Whether a declared network can be a machine: heat can leave every node, something is warm, streams go somewhere."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Iterator, Sequence
 
 from geom.description.names import plain_name

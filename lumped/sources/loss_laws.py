@@ -3,8 +3,6 @@
 What a law declares is what the network injects: the source's weights sum to 1 and nothing is clipped.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

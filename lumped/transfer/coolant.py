@@ -1,7 +1,5 @@
 """Coolants by name: water, glycol mixtures with a stated share, oils, air."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from functools import partial
 

@@ -1,7 +1,5 @@
 """Oils by the three numbers of their data sheets: viscosity at 40 and at 100 degC, density at 15 degC."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 from functools import lru_cache

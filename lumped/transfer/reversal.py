@@ -1,7 +1,5 @@
 """Flows that turn round: a stream as one law per direction, or refused where nothing says what comes in from behind."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

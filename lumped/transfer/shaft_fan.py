@@ -5,8 +5,6 @@
 of a link in network.toml, and of a part in [films.outer] of a machine file.
 """
 
-from __future__ import annotations
-
 from lumped.schemas.reader import Table
 from lumped.transfer.laws import InputPower
 

@@ -3,8 +3,6 @@
 The axis is z, the shaft extension is on the right (high z), the base lies at -y.
 """
 
-from __future__ import annotations
-
 from geom.description import shapes
 from geom.description.geometry import Geometry
 from geom.description.part import Part, fluid

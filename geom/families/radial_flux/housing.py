@@ -1,7 +1,5 @@
 """End-caps, bearings, housing, foot and base."""
 
-from __future__ import annotations
-
 import math
 
 from geom.description import shapes

@@ -1,7 +1,5 @@
 """Magnets inside a rotor: their corners in the plane, and how wide they may be."""
 
-from __future__ import annotations
-
 import math
 
 from geom.description import shapes

@@ -4,8 +4,6 @@ Here stands what their lengths are measured in, so that any ratios fit together:
 would begin, with room to spare for what the other ratios may do.
 """
 
-from __future__ import annotations
-
 import math
 from pathlib import Path
 

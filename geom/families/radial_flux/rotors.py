@@ -1,7 +1,5 @@
 """Rotors: interior magnets, or a die-cast cage."""
 
-from __future__ import annotations
-
 from geom.description import shapes
 from geom.description.geometry import Geometry
 from geom.description.part import Part, extrude

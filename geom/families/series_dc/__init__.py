@@ -4,8 +4,6 @@ The axis is z, the commutator sits on the right (high z), the feet point to -y. 
 one or two liquid jackets between the feet.
 """
 
-from __future__ import annotations
-
 from geom.description import shapes
 from geom.description.geometry import Geometry
 from geom.description.part import Part, fluid

@@ -1,7 +1,5 @@
 """Values of a series-wound motor that are allowed one by one but do not fit together."""
 
-from __future__ import annotations
-
 import math
 
 from geom.description import shapes

@@ -1,7 +1,5 @@
 """The commutator, one homogeneous body or copper bars with mica between them and to the hub; and its brush gear."""
 
-from __future__ import annotations
-
 import math
 
 from geom.description import shapes

@@ -1,7 +1,5 @@
 """What formulas ask of a series-wound machine beside its solids."""
 
-from __future__ import annotations
-
 import math
 
 from geom.description.geometry import Duct, Features, Geometry, PoleCoils, SeriesWound

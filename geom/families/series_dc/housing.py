@@ -1,7 +1,5 @@
 """Housing with fins or liquid jackets, their ports and coolant, flanges, bearings, feet and base."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 

@@ -1,7 +1,5 @@
 """Shaft, armature and commutator."""
 
-from __future__ import annotations
-
 from geom.description import shapes
 from geom.description.geometry import Geometry
 from geom.description.part import Part, Prism, extrude
