@@ -4,8 +4,6 @@ Most lengths are measured in others (`Scale`): a file gives the length itself (t
 (tooth_ratio), or neither; then it has the proportion of the default machine. Any ratios within their bounds fit.
 """
 
-from __future__ import annotations
-
 import csv
 import math
 from collections.abc import Callable, Mapping
@@ -33,7 +31,7 @@ class Measure:
     span: Length
     start: Length = lambda g: 0.0
 
-    def __call__(self, low: float, high: float) -> Scale:
+    def __call__(self, low: float, high: float) -> "Scale":
         return Scale(self.name, low, high, self.span, self.start)
 
 

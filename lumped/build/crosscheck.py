@@ -1,7 +1,5 @@
 """The network against the field it came from, on the same mesh, with the same coefficients: where do they differ?"""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import dataclass
 
@@ -66,7 +64,7 @@ class CrossCheck:
     state: Array
     field: Array
     links: tuple[LinkCheck, ...]
-    at: Coefficients
+    at: "Coefficients"
     heat: float
 
     @property

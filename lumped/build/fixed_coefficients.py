@@ -3,8 +3,6 @@
 Temperatures are rises over the surroundings (K): of a field's unknowns, then of its fluids.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, replace
 
@@ -35,7 +33,7 @@ class FixedCoefficients:
     streams: Array
     heat: Array
 
-    def moved(self, spread: float, seed: int = 0) -> FixedCoefficients:
+    def moved(self, spread: float, seed: int = 0) -> "FixedCoefficients":
         """The same with every film and contact times spread ** U(-1, 1)."""
         rng = np.random.default_rng(seed)
         films, contacts = (random_coefficients(of, spread, rng) for of in (self.films, self.contacts))

@@ -6,8 +6,6 @@ times the elements. Before that, one field of quadratic elements says along whic
 Where smaller triangles of one part alone do what smaller ones everywhere would, it alone has them.
 """
 
-from __future__ import annotations
-
 import hashlib
 import json
 from collections.abc import Iterable, Mapping
@@ -207,7 +205,7 @@ class _Way:
         """One more would tell more: two known halvings show the order."""
         return len(self.moves) == self.level < 2
 
-    def less(self, gain: Kelvins) -> _Way:
+    def less(self, gain: Kelvins) -> "_Way":
         """After smaller triangles of one part have moved the hot spots by so much, a halving's worth at most."""
         rest = [{p: max(K - gain[p], 0.5**ORDER * K) for p, K in move.items()} for move in self.moves]
         return replace(self, moves=tuple(rest))

@@ -1,7 +1,5 @@
 """From a machine to a model that can run a test: mesh, field, network, films and losses; cached by content."""
 
-from __future__ import annotations
-
 import hashlib
 import pickle
 from collections.abc import Callable, Mapping
@@ -57,11 +55,11 @@ class Meshing:
     bends: Bends | None = None
 
     @property
-    def coarser(self) -> Meshing:
+    def coarser(self) -> "Meshing":
         """Elements twice as large every way; arcs keep their chords, so that both meshes have the same volume."""
         return replace(self, size_m=2 * self.size_m, across=self.across / 2, axial_m=2 * self.axial_m)
 
-    def along(self, way: str, times: float) -> Meshing:
+    def along(self, way: str, times: float) -> "Meshing":
         """Elements so many times as large one way, "size_m", "across" or "axial_m", with the same chords; towards
         the ends of a part, which has one way of its own, a step finer."""
         if way not in ("size_m", "across", "axial_m"):

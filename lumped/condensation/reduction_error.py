@@ -1,7 +1,5 @@
 """How far a condensed network is from its field, in the numbers a user cares about."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
@@ -27,7 +25,7 @@ class Accuracy:
     hot: float = 2.0
     point: float = 2.0
 
-    def excess(self, error: PartError) -> float:
+    def excess(self, error: "PartError") -> float:
         """1 where a part is just good enough."""
         return max(error.mean / self.mean, error.hot / self.hot, error.point / self.point)
 

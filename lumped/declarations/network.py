@@ -1,17 +1,16 @@
 """Networks declared by hand in network.toml. Every key is described in docs/network-toml.md."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Container, Iterable, Mapping
 from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
 from geom.description.roles import Identity, Role, identity
 from geom.description.toml_file import read_toml
 from geom.errors import InputError
+from lumped.circuits.circuit import Circuit
 from lumped.declarations.links import flow_column, flow_law, mechanisms
 from lumped.declarations.loss_tables import deducted, loss_kinds, loss_laws
 from lumped.declarations.parameters import read_parameters
@@ -24,9 +23,6 @@ from lumped.sources.loss_laws import EDDY
 from lumped.transfer.laws import Law, Scaled
 from lumped.transfer.reversal import Direction, OneWay
 from lumped.transfer.streamed import Streamed
-
-if TYPE_CHECKING:
-    from lumped.circuits.circuit import Circuit
 
 SECTIONS = ("nodes", "surfaces", "means", "links", "streams", "losses", "circuits", "parameters")
 RIGHT = "a network.toml (docs/network-toml.md)"

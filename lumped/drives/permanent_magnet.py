@@ -3,8 +3,6 @@
 v_d = R i_d - w Lq i_q,  v_q = R i_q + w (Ld i_d + psi),  T = 3/2 p (psi + (Ld - Lq) i_d) i_q   (peak dq values)
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np
@@ -104,10 +102,10 @@ class _Region:
     psi: Array
     side: float
 
-    def only(self, mask: Mask) -> _Region:
+    def only(self, mask: Mask) -> "_Region":
         return _Region(self.machine, self.w[mask], self.R[mask], self.psi[mask], self.side)
 
-    def other(self) -> _Region:
+    def other(self) -> "_Region":
         """The same limits on the other side, where i_q has the other sign: as with -R."""
         return _Region(self.machine, self.w, -self.R, self.psi, -self.side)
 

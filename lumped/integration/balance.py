@@ -1,7 +1,5 @@
 """Where the heat goes: through every link and out of every source."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import dataclass
 
@@ -65,7 +63,7 @@ def balance(network: Network, record: Record, values: Mapping[str, float] | None
     return counted(network, core, run, walk(network, record, core, run))
 
 
-def counted(network: Network, core: Compiled, run: Run, way: Walk) -> Balance:
+def counted(network: Network, core: Compiled, run: Run, way: "Walk") -> Balance:
     """The balance of a run that was walked along; core with all terms."""
     mean = np.array(["#" not in s for s in network.states], float)
     assert run.z is not None

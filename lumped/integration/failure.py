@@ -1,18 +1,12 @@
 """Why a run could not go on: the node, the time and the input, in words."""
 
-from __future__ import annotations
-
-from typing import TYPE_CHECKING
-
 import numpy as np
 
+from lumped.integration.compiled import Compiled
 from lumped.integration.runaway import growing_losses
 from lumped.model.network import Network
 from lumped.numerics.kernel import HOT, KNOT, NODE, OUTSIDE, SHARE, STATUS, Position
 from lumped.numerics.terms import Forcing
-
-if TYPE_CHECKING:
-    from lumped.integration.compiled import Compiled
 
 
 def failure(network: Network, core: Compiled, forcing: Forcing, at: Position) -> str:

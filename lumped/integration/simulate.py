@@ -3,8 +3,6 @@
 run = simulate(network, Record(time, inputs, boundaries, initial), values, rows, tangents)
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
@@ -61,7 +59,7 @@ class Run(TableResult):
     end: Stand
     steps: Steps
     path: Array | None = None
-    finer: Callable[[], Run] = None  # type: ignore[assignment]
+    finer: "Callable[[], Run]" = None  # type: ignore[assignment]
 
     @property  # one that is cached has, before Python 3.12, one lock for all runs: threads would wait for each other
     def time_error_K(self) -> Array:

@@ -6,19 +6,15 @@ bounds of all numbers, and the families of machines have the keys of theirs.
 python -m lumped.schemas.schema FOLDER    writes the schemas, out/schemas where no folder is named
 """
 
-from __future__ import annotations
-
 import json
 import sys
 from collections.abc import Iterator, Mapping
 from functools import cache
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
+from geom.description.parameters import Parameter
 from lumped.schemas.bounds import bounds
-
-if TYPE_CHECKING:
-    from geom.description.parameters import Parameter
 
 FOLDER = Path(__file__).parent
 FILES = ("network", "case", "sheet", "model", "cycle", "bench", "machine")
