@@ -164,20 +164,16 @@ def completed(sections: Mapping[str, Any], where: str) -> Mapping[str, Any]:
     tables = _without(original, ["machine", "name"])
     for key in without if isinstance(without, list) else [without]:
         try:
-            tables = _without(tables, _words_of_key(key))
+            # The words of a key with dots, as TOML reads it: 'contacts."base|foot"' has contacts and base|foot.
+            words, inner = [], tomllib.loads(f"{key} = 0")
+            while isinstance(inner, dict):
+                ((word, inner),) = inner.items()
+                words.append(word)
+            tables = _without(tables, words)
         except ValueError:
             what, right = f"without: {name} has no {str(key)[:60]!r}", """such as ["fans", 'contacts."base|foot"']"""
             raise InputError(what, place, right) from None
     return _overlaid(tables, {**sections, "machine": new_header})
-
-
-def _words_of_key(key: Any) -> list[str]:
-    """The words of a key with dots, as TOML reads it: 'contacts."base|foot"' has contacts and base|foot."""
-    words, inner = [], tomllib.loads(f"{key} = 0")
-    while isinstance(inner, dict):
-        ((word, inner),) = inner.items()
-        words.append(word)
-    return words
 
 
 def _without(table: Mapping[str, Any], words: Sequence[str]) -> dict[str, Any]:

@@ -47,23 +47,19 @@ def find_blocks(cut: Partition) -> list[Block]:
     blocks: list[Block] = []
     growing: list[Block] = []
     for slab in range(cut.labels.shape[1]):
-        groups = _groups(cut, slab)
+        # Sets of solid faces of one slab that are connected through common edges.
+        solid = np.append(cut.solid[:, slab], False)
+        inside = solid[cut.left] & solid[cut.right]
+        component = joined_groups(len(solid), np.column_stack([cut.left[inside], cut.right[inside]]))
+        members = defaultdict(list)
+        for face in np.flatnonzero(solid):
+            members[component[face]].append(face)
+        groups = [np.array(faces) for faces in members.values()]
         extensions = [_continued(cut, growing, faces, slab) for faces in groups]
         open_ids = {id(block) for block, _ in extensions if block}
         blocks += [block for block in growing if id(block) not in open_ids]
         growing = [new for _, new in extensions]
     return sorted(blocks + growing, key=lambda block: (block.first, block.faces[0]))
-
-
-def _groups(cut: Partition, slab: int) -> list[Ints]:
-    """Sets of solid faces of one slab that are connected through common edges."""
-    solid = np.append(cut.solid[:, slab], False)
-    inside = solid[cut.left] & solid[cut.right]
-    component = joined_groups(len(solid), np.column_stack([cut.left[inside], cut.right[inside]]))
-    members = defaultdict(list)
-    for face in np.flatnonzero(solid):
-        members[component[face]].append(face)
-    return [np.array(faces) for faces in members.values()]
 
 
 def _continued(cut: Partition, growing: Sequence[Block], faces: Ints, slab: int) -> tuple[Block | None, Block]:

@@ -17,19 +17,15 @@ NEAR = 2e-6  # m; points and lines nearer than this are one, far below any toler
 
 def noded(lines: list[shapely.Geometry]) -> NDArray[np.object_]:
     """Segments that tile the union of the lines and meet only at their ends."""
-    points, edges = _segments(shapely.union_all(lines, grid_size=GRID))
+    xy, line = shapely.get_coordinates(shapely.get_parts(shapely.union_all(lines, grid_size=GRID)), return_index=True)
+    keys, number = np.unique(np.round(xy / GRID).astype(np.int64), axis=0, return_inverse=True)
+    follows = line[1:] == line[:-1]
+    points, edges = keys * GRID, np.column_stack([number[:-1][follows], number[1:][follows]])
     # For each point the number of the point that stands for all those near it.
     group = near_groups(points, NEAR)
     edges = _distinct(np.unique(group, return_index=True)[1][group][edges])
     edges = _distinct(_split(points, edges))
     return shapely.linestrings(points[edges])
-
-
-def _segments(lines: shapely.Geometry) -> tuple[Array, Ints]:
-    xy, line = shapely.get_coordinates(shapely.get_parts(lines), return_index=True)
-    keys, number = np.unique(np.round(xy / GRID).astype(np.int64), axis=0, return_inverse=True)
-    follows = line[1:] == line[:-1]
-    return keys * GRID, np.column_stack([number[:-1][follows], number[1:][follows]])
 
 
 def _distinct(edges: Ints) -> Ints:

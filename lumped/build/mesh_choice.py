@@ -155,7 +155,10 @@ class _Looks:
 
     @cached_property
     def point(self) -> FixedCoefficients:
-        return _at_rated_point(self.ready(self.first))
+        ready = self.ready(self.first)
+        machine = ready.machine
+        network = on_every_base(means_network(machine, reduced(ready, MEANS)))
+        return rated(machine, network, ready.films, ready.contacts)
 
     def ready(self, how: Meshing) -> Prepared:
         return meshed(self.machine, how, lambda message: self.progress(f"estimating the error of the mesh: {message}"))
@@ -375,9 +378,3 @@ def counts_of(machine: Machine, how: Meshing) -> tuple[int, Mapping[str, int]]:
         midsides = wound(machine, part) or (how.bends is not None and how.bends.of(part))
         unknowns[part] = len(Elements.on(tets, mesh.points[points], midsides).xyz)
     return len(mesh.points), unknowns
-
-
-def _at_rated_point(ready: Prepared) -> FixedCoefficients:
-    machine = ready.machine
-    network = on_every_base(means_network(machine, reduced(ready, MEANS)))
-    return rated(machine, network, ready.films, ready.contacts)

@@ -163,7 +163,12 @@ class Circuit:
         own, whose shares follow flow and temperature, and sum to 1.
         """
         rate = self._rate(warmed(self.liquid, self.at_degC))
-        paths = self._paths
+        # Branch -> its edges from the inlet to where the branches meet.
+        nodes = {
+            branch: [self.cell(branch, k) for k in range(self.cells * len(passes))]
+            for branch, passes in self.branches.items()
+        }
+        paths = {branch: list(pairwise([self.inlet, *cells, self.outlet])) for branch, cells in nodes.items()}
         ways = (
             mean_row(network, [node for path in paths.values() for edge in path[:-1] for node in edge]),
             mean_row(network, [node for path in paths.values() for edge in path[1:] for node in edge]),
@@ -174,15 +179,6 @@ class Circuit:
         branches = ((f".{name}", path, self._shared(name)) for name, path in paths.items())
         back = [("", self._return, rate)] if self._return else []
         return [link for of in (*branches, *back) for link in self._both_ways(network, *of, ways)]
-
-    @property
-    def _paths(self) -> dict[str, list[Edge]]:
-        """Branch -> its edges from the inlet to where the branches meet."""
-        nodes = {
-            branch: [self.cell(branch, k) for k in range(self.cells * len(passes))]
-            for branch, passes in self.branches.items()
-        }
-        return {branch: list(pairwise([self.inlet, *cells, self.outlet])) for branch, cells in nodes.items()}
 
     @property
     def _return(self) -> list[Edge]:

@@ -21,8 +21,14 @@ def enclosure(g: Geometry, z: Axial) -> tuple[Part, ...]:
     left, right = (z.flange0, z.inner0), (z.inner1, z.flange1)
     top, middle = -g.feet.shaft_height, (z.inner0 + z.inner1) / 2
     plate = shapes.rectangle(-g.base.width / 2, g.base.width / 2, top - g.base.thickness, top)
+    # With jackets the housing as it is made: round bores, and a helix for the rings.
+    bored, helical = nozzles(g), g.jacket.layout == "helical"
+    cad_shape = None
+    if bored:
+        helices = [turns_of(g, r, *span).helix(g.jacket.port) for span in z.jackets.values() if helical]
+        cad_shape = CadShape(_walls(g, z, r, None if helical else ()), (*helices, *(nozzle.drill for nozzle in bored)))
     return (
-        _housing(g, z, r),
+        Part("housing", "aluminium-cast", _walls(g, z, r, bored), cad_shape=cad_shape, role=Role.HOUSING),
         Part("flange.left", "aluminium-cast", ((flange, *left),), role=Role.END_SHIELD),
         Part("flange.right", "aluminium-cast", ((flange, *right),), role=Role.END_SHIELD),
         Part("bearing.left", "bearing", ((bearing, *left),), role=Role.BEARING),
@@ -31,16 +37,6 @@ def enclosure(g: Geometry, z: Axial) -> tuple[Part, ...]:
         Part("base", "steel", ((plate, middle - g.base.length / 2, middle + g.base.length / 2),), role=Role.BASE),
         *(nozzle.part() for nozzle in nozzles(g)),
     )
-
-
-def _housing(g: Geometry, z: Axial, r: Radii) -> Part:
-    """The housing; with jackets, as it is made: round bores, and a helix for the rings."""
-    bored, helical = nozzles(g), g.jacket.layout == "helical"
-    cad_shape = None
-    if bored:
-        helices = [turns_of(g, r, *span).helix(g.jacket.port) for span in z.jackets.values() if helical]
-        cad_shape = CadShape(_walls(g, z, r, None if helical else ()), (*helices, *(nozzle.drill for nozzle in bored)))
-    return Part("housing", "aluminium-cast", _walls(g, z, r, bored), cad_shape=cad_shape, role=Role.HOUSING)
 
 
 def _walls(g: Geometry, z: Axial, r: Radii, bored: Sequence[Nozzle] | None) -> tuple[Prism, ...]:
