@@ -263,12 +263,9 @@ def _looked_for(looks: _Looks, accuracy: float, most: int) -> MeshChoice:
             there, halvings = how.along(way, 0.5), ways[way]
             new = () if len(halvings.moves) > halvings.level else (looks.moved(how, there),)
             how, ways[way] = there, _Way((*halvings.moves, *new), halvings.level + 1)
-            stale |= _not_refined(ways) - set(IN_PLANE if way not in IN_PLANE else ways)  # ends and axis overlap
-
-
-def _not_refined(ways: Mapping[str, _Way]) -> set[str]:
-    """Those refined know the order that they show, and keep it."""
-    return {way for way, halvings in ways.items() if halvings.level == 0}
+            # Those refined know the order that they show, and keep it; ends and axis overlap.
+            unrefined = {way for way, halvings in ways.items() if halvings.level == 0}
+            stale |= unrefined - set(IN_PLANE if way not in IN_PLANE else ways)
 
 
 def _one_part_finer(

@@ -165,15 +165,11 @@ class Reader:
             out[block.dofs.start + nodes] = weights
         elif p.kind == "surface":
             out[: self.field.n] = self.field.face_mean(self.field.film(place).trace)
-        else:
-            self._add_means(out, p.mean)
+        else:  # a sum of means of parts and of fluids; shapes of a zone are left out
+            for i, weight in zip(p.mean.index, p.mean.weights, strict=True):
+                state = self.network.states[i]
+                if state in self.field.blocks:
+                    out[: self.field.n] += weight * self.field.mean(state)
+                elif state in self.point.fluids:
+                    out[self.field.n + self.point.fluids.index(state)] += weight
         return out
-
-    def _add_means(self, out: Array, mean: Row) -> None:
-        """A place that is a sum of means of parts and of fluids; shapes of a zone are left out."""
-        for i, weight in zip(mean.index, mean.weights, strict=True):
-            name = self.network.states[i]
-            if name in self.field.blocks:
-                out[: self.field.n] += weight * self.field.mean(name)
-            elif name in self.point.fluids:
-                out[self.field.n + self.point.fluids.index(name)] += weight

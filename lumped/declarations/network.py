@@ -50,15 +50,6 @@ def _declared_identity(table: Table) -> Identity | None:
     return None if role is None and turns is None else identity(role, turns)
 
 
-def read_quantities(top: Table) -> dict[str, str]:
-    """[inputs.NAME] quantity = "speed": what an input measures."""
-    out = {}
-    for name, table in top.tables("inputs").items():
-        out[name] = table.word("quantity", None, INPUTS)
-        table.close()
-    return out
-
-
 def load_network(
     path: str | Path, shares: Container[str] = (), note: Callable[[str], None] = lambda words: None
 ) -> Network:
@@ -119,7 +110,11 @@ def _read(data: Mapping[str, Any], where: str) -> Network:
         raise head.error(f"'{min(clash)}' is a node and a boundary", "one or the other")
     identities = read_identities(top, nodes, boundaries, cells)
     network = replace(network, places=_places(network, top, nodes, cells), settles_s=settles)
-    network = replace(network, declared=identities, quantities=read_quantities(top))
+    quantities = {}  # [inputs.NAME] quantity = "speed": what an input measures
+    for signal, table in top.tables("inputs").items():
+        quantities[signal] = table.word("quantity", None, INPUTS)
+        table.close()
+    network = replace(network, declared=identities, quantities=quantities)
     loops = [link for circuit in circuits.values() for link in circuit.links(network)]
     links = [*_links(network, top), *_streams(network, top), *loops]
     network = replace(network, links=tuple(links), sources=tuple(_sources(network, top)))
@@ -234,8 +229,9 @@ def _sources(network: Network, top: Table) -> list[Source]:
     tables = top.tables("losses")
     kinds, laws = loss_kinds(tables), loss_laws(tables, network.quantities)
     out = {name: _source(network, name, tables[name.removesuffix(EDDY)], law) for name, law in laws.items()}
+    # What the model injects elsewhere leaves the measured total, at its own temperature, watt for watt.
     differences = [
-        _difference(out[name], out[part])
+        replace(out[name], name=f"loss:{name}:less:{part}", law=Scaled(out[part].law, -1.0), probe=out[part].probe)
         for name, kind in kinds.items()
         if kind == "measured"
         for other in deducted(tables[name], kinds)
@@ -254,12 +250,6 @@ def _source(network: Network, name: str, table: Table, law: Law) -> Source:
         raise table.error(f"shares of 'at' sum to {sum(shares.values()):g}", "shares that sum to 1")
     probe = _end(network, table, table.word("temperature_of", max(shares, key=lambda node: shares[node])))
     return node_source(network, f"loss:{name}", table.word("kind"), shares, law, probe)
-
-
-def _difference(measured: Source, other: Source) -> Source:
-    """What the model injects elsewhere leaves the measured total, at its own temperature, watt for watt."""
-    name = f"{measured.name}:less:{other.name.removeprefix('loss:')}"
-    return replace(measured, name=name, law=Scaled(other.law, -1.0), probe=other.probe)
 
 
 def _checked(network: Network, where: str) -> Network:

@@ -11,7 +11,10 @@ from lumped.numerics.terms import Forcing
 
 def failure(network: Network, core: Compiled, forcing: Forcing, at: Position) -> str:
     """What to say of where the run stands."""
-    status, t, hottest = int(at.at[STATUS]), _instant(forcing, at), core.control.hottest[0]
+    j = min(int(at.at[KNOT]), forcing.time.size - 1)
+    before = forcing.time[max(j - 1, 0)]
+    t = float(before + at.clock[SHARE] * (forcing.time[j] - before))
+    status, hottest = int(at.at[STATUS]), core.control.hottest[0]
     node, where = network.states[int(at.at[NODE])], f"{network.title}: "
     if status == HOT and (growing := growing_losses(network)):
         tables = ", ".join(f"[losses.{name}]" for name in growing)
@@ -23,13 +26,11 @@ def failure(network: Network, core: Compiled, forcing: Forcing, at: Position) ->
     if status == OUTSIDE:
         what = f"no step keeps '{node}' within what boundaries, start and sources allow at t = {t:g} s"
         return f"{where}{what}{_moving(network, core, forcing, at)}"
-    return f"{where}no finite solution at t = {t:g} s; {_hint(network, core)}"
-
-
-def _instant(forcing: Forcing, at: Position) -> float:
-    j = min(int(at.at[KNOT]), forcing.time.size - 1)
-    before = forcing.time[max(j - 1, 0)]
-    return float(before + at.clock[SHARE] * (forcing.time[j] - before))
+    hint = "check the coefficients of the links: G_W_K, R_K_W and what they are multiplied with"
+    floating = [s for s, c, row in zip(network.states, core.C, core.K0, strict=True) if c == 0.0 and not np.any(row)]
+    if floating:
+        hint = f"states without capacity and constant links: {', '.join(floating)}"
+    return f"{where}no finite solution at t = {t:g} s; {hint}"
 
 
 def _moving(network: Network, core: Compiled, forcing: Forcing, at: Position) -> str:
@@ -42,10 +43,3 @@ def _moving(network: Network, core: Compiled, forcing: Forcing, at: Position) ->
     name = core.names[int(np.argmax(step / np.maximum(scale, 1e-300)))]
     laws = {x.name: x.law for x in network.links} | {x.name: x.law for x in network.sources}
     return f", where input '{', '.join(laws[name].reads)}' moves '{name}'"
-
-
-def _hint(network: Network, core: Compiled) -> str:
-    floating = [s for s, c, row in zip(network.states, core.C, core.K0, strict=True) if c == 0.0 and not np.any(row)]
-    if floating:
-        return f"states without capacity and constant links: {', '.join(floating)}"
-    return "check the coefficients of the links: G_W_K, R_K_W and what they are multiplied with"

@@ -158,8 +158,10 @@ def march(
     """
     course = _Course(network, record, core, keep_states, begin, steps, portion)
     course.path = [] if keep_path else None
-    for part in _parts(core.forcing.time, core.C):
-        course.over(part, part.start > 0 or begin is None)
+    time = core.forcing.time  # cut at its jumps, if any state has no capacity: there such states find a new balance
+    jumps = np.flatnonzero(np.diff(time, prepend=-np.inf) == 0.0) if np.any(core.C == 0.0) else np.empty(0, int)
+    for a, b in pairwise([0, *jumps, time.size]):
+        course.over(slice(a, b), a > 0 or begin is None)
     return course.run()
 
 
@@ -298,9 +300,3 @@ def _trace(ns: int, core: Compiled, nb: int, moves: bool) -> kernel.Trace:
         factored(slots, core.structure),
         np.zeros((slots, n, nb)),
     )
-
-
-def _parts(time: Array, C: Array) -> list[slice]:
-    """The record between its jumps, if any state has no capacity: there such states start from a new balance."""
-    jumps = np.flatnonzero(np.diff(time, prepend=-np.inf) == 0.0) if np.any(C == 0.0) else np.empty(0, int)
-    return [slice(a, b) for a, b in pairwise([0, *jumps, time.size])]

@@ -26,7 +26,6 @@ from dataclasses import replace
 import numpy as np
 
 from geom.description.machine import Machine
-from geom.description.part import Part
 from lumped.machine.air import fan_streams
 from lumped.machine.bases import switched
 from lumped.machine.films import Surroundings, face_films, nominal, surroundings
@@ -78,14 +77,13 @@ def fluids(machine: Machine) -> dict[str, float]:
     """Fluid nodes and their heat capacities (J/K)."""
     out: dict[str, float] = {}
     for part in machine.fluids:
-        out |= {part.name: AIR_IN_SPACE} if part.material == "air" else _cells(machine, part)
+        if part.material == "air":
+            out[part.name] = AIR_IN_SPACE
+        else:
+            liquid = surroundings(machine, ()).cooling.liquid  # type: ignore[union-attr]
+            names = cells_of(machine, part.name)
+            out |= dict.fromkeys(names, liquid.rho * liquid.cp * part.volume / len(names))
     return out
-
-
-def _cells(machine: Machine, jacket: Part) -> dict[str, float]:
-    liquid = surroundings(machine, ()).cooling.liquid  # type: ignore[union-attr]
-    names = cells_of(machine, jacket.name)
-    return dict.fromkeys(names, liquid.rho * liquid.cp * jacket.volume / len(names))
 
 
 def boundaries(machine: Machine) -> tuple[str, ...]:

@@ -33,16 +33,6 @@ def parameter_values(network: Network, values: Mapping[str, float]) -> dict[str,
     return {p.name: float(values.get(p.name, p.value)) for p in network.parameters}
 
 
-def _targets(network: Network, parameter: Parameter, valid: set[str]) -> list[tuple[str, float]]:
-    thermal = [(t, e) for t, e in parameter.targets if not t.startswith(CHANNEL_OPERATORS)]
-    for target, _ in thermal:
-        if target not in valid:
-            what = f"target '{target}' is not a link, source or capacity group"
-            where = f"parameter '{parameter.name}' of {network.title}"
-            raise InputError(what, where, f"known: {', '.join(sorted(valid))}")
-    return thermal
-
-
 @once
 def _acting(network: Network) -> dict[str, list[tuple[str, float]]]:
     """Target -> what acts on it: (parameter, exponent)."""
@@ -50,8 +40,13 @@ def _acting(network: Network) -> dict[str, list[tuple[str, float]]]:
     targets = {link.name for link in network.links} | {source.name for source in network.sources} | groups
     out: dict[str, list[tuple[str, float]]] = {}
     for p in network.parameters:
-        for target, exponent in _targets(network, p, targets):
-            out.setdefault(target, []).append((p.name, exponent))
+        for t, exponent in p.targets:
+            if t.startswith(CHANNEL_OPERATORS):
+                continue
+            if t not in targets:
+                what, where = f"target '{t}' is not a link, source or capacity group", f"parameter '{p.name}'"
+                raise InputError(what, f"{where} of {network.title}", f"known: {', '.join(sorted(targets))}")
+            out.setdefault(t, []).append((p.name, exponent))
     return out
 
 

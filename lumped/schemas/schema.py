@@ -143,16 +143,12 @@ def bounded(node: Any, key: str = "", table: str = "") -> Any:
     if "properties" in node:
         out["properties"] = {name: bounded(inner, name, key) for name, inner in node["properties"].items()}
     if "additionalProperties" in node:  # under names of the user's own: shares, constants, values
-        out["additionalProperties"] = bounded(node["additionalProperties"], *_owned(key, table))
+        out["additionalProperties"] = bounded(node["additionalProperties"], "shares" if key in COMMON else key, table)
     return {name: out[name] for name in node}
 
 
 INNER = ("properties", "additionalProperties")
 COMMON = ("at", "of", "wall", "winding", "magnet", "cage")  # tables of name -> share of one whole
-
-
-def _owned(key: str, table: str) -> tuple[str, str]:
-    return ("shares" if key in COMMON else key), table
 
 
 def write_schemas(folder: Path | str) -> list[Path]:

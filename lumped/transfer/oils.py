@@ -47,12 +47,9 @@ def _oil(sheet: DataSheet, T: float) -> Fluid:
     shrunk = expansion * (T - 15.0)
     rho = sheet.density * math.exp(-shrunk * (1.0 + 0.8 * shrunk))
     cp, k = (1685.0 + 3.4 * T) / math.sqrt(s), 0.1172 * (1.0 - 0.00054 * T) / s
-    return Fluid(rho, cp, k, rho * 1e-6 * _viscosity(sheet, T), expansion * (1.0 + 1.6 * shrunk))
-
-
-def _viscosity(sheet: DataSheet, T: float) -> float:
-    """mm2/s: log log (nu + 0.7) falls in a straight line over the logarithm of the absolute temperature."""
+    # log log (nu + 0.7), nu in mm2/s, falls in a straight line over the logarithm of the absolute temperature.
     one, two = (math.log10(math.log10(nu + 0.7)) for nu in (sheet.at_40C, sheet.at_100C))
     warm, hot = math.log10(40.0 + ZERO_C), math.log10(100.0 + ZERO_C)
     along = (math.log10(T + ZERO_C) - warm) / (hot - warm)
-    return float(10.0**10.0 ** (one + along * (two - one)) - 0.7)
+    nu = float(10.0**10.0 ** (one + along * (two - one)) - 0.7)
+    return Fluid(rho, cp, k, rho * 1e-6 * nu, expansion * (1.0 + 1.6 * shrunk))
