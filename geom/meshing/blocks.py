@@ -65,17 +65,13 @@ def find_blocks(cut: Partition) -> list[Block]:
 def _continued(cut: Partition, growing: Sequence[Block], faces: Ints, slab: int) -> tuple[Block | None, Block]:
     """The block of the previous slab that goes on unchanged, if any, and the block up to this slab."""
     for block in growing:
-        if np.array_equal(block.faces, faces) and _unchanged(cut, faces, slab):
-            return block, Block(faces, block.first, slab)
+        if np.array_equal(block.faces, faces):  # unchanged, if its neighbours are, too
+            mine = np.isin(cut.left, faces) | np.isin(cut.right, faces)
+            around = np.unique(np.concatenate([faces, cut.left[mine], cut.right[mine]]))
+            around = around[around >= 0]
+            if np.array_equal(cut.labels[around, slab], cut.labels[around, slab - 1]):
+                return block, Block(faces, block.first, slab)
     return None, Block(faces, slab, slab)
-
-
-def _unchanged(cut: Partition, faces: Ints, slab: int) -> bool:
-    """Neither the faces nor their neighbours change between the previous slab and this one."""
-    mine = np.isin(cut.left, faces) | np.isin(cut.right, faces)
-    around = np.unique(np.concatenate([faces, cut.left[mine], cut.right[mine]]))
-    around = around[around >= 0]
-    return np.array_equal(cut.labels[around, slab], cut.labels[around, slab - 1])
 
 
 def find_columns(cut: Partition, blocks: Sequence[Block]) -> list[Column]:

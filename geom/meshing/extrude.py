@@ -138,15 +138,11 @@ def _assembled(
     names = tuple(part.name for part in parts if part.solid)
     facets = np.searchsorted(nodes, np.concatenate([triangles for triangles, _ in walls]))
     sides = np.concatenate([labels for _, labels in walls])
-    tets = _positive(points, corners.reshape(-1, 4))
-    return NamedMesh(points, tets, (np.cumsum(solid) - 1)[label], names, *_named(facets, sides, parts, face_name))
-
-
-def _positive(points: Array, tets: Ints) -> Ints:
+    tets = corners.reshape(-1, 4)
     a, b, c, d = (points[tets[:, i]] for i in range(4))
     negative = np.einsum("ij,ij->i", np.cross(b - a, c - a), d - a) < 0
     tets[negative] = tets[negative][:, [1, 0, 2, 3]]
-    return tets
+    return NamedMesh(points, tets, (np.cumsum(solid) - 1)[label], names, *_named(facets, sides, parts, face_name))
 
 
 def _named(

@@ -46,7 +46,12 @@ def build_mesh(
     Raises InputError where solids overlap or a closed void is not declared as a fluid.
     """
     axial = 1.5 * size_m if axial_m is None else axial_m
-    file = _cache_file(machine, (size_m, segments, across, axial, *sorted(ends), "/", *sorted(finer)), cache)
+    file = None
+    if cache is not None:  # named by what a mesh depends on: shapes and names, not materials
+        settings = (size_m, segments, across, axial, *sorted(ends), "/", *sorted(finer))
+        shapes = [(part.name, part.prisms, part.solid) for part in (*machine.parts, *machine.fluids)]
+        content = repr((shapes, sorted(machine.face_names.items()), settings)).encode()
+        file = Path(cache) / f"mesh-{hashlib.sha256(content).hexdigest()[:20]}.npz"
     identities = {part.name: identity for part in machine.parts if (identity := part.identity) is not None}
     if file is not None and (cached := recalled(file, read_npz)) is not None:
         return replace(cached, identities=identities)
@@ -84,12 +89,3 @@ def _triangulated(
     plan = _planned(parts, segments)
     times = {label: finer.count(part.name) for label, part in enumerate(plan.cut.parts)}
     return triangulate(plan.columns, size_m, across, times)
-
-
-def _cache_file(machine: Machine, settings: tuple[float | str, ...], cache: Path | str | None) -> Path | None:
-    """Named by what a mesh depends on: shapes and names, not materials."""
-    if cache is None:
-        return None
-    shapes = [(part.name, part.prisms, part.solid) for part in (*machine.parts, *machine.fluids)]
-    content = repr((shapes, sorted(machine.face_names.items()), settings)).encode()
-    return Path(cache) / f"mesh-{hashlib.sha256(content).hexdigest()[:20]}.npz"

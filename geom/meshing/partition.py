@@ -56,17 +56,12 @@ def partition(parts: Sequence[Part], segments: int = 72) -> Partition:
     grid = ArcGrid(profiles, segments)
     exact = np.array([profile.to_polygon(grid) for profile in profiles], dtype=object)
     polygons = shapely.set_precision(exact, GRID, mode="pointwise")  # equal corners become equal to the bit
-    faces = _tile(polygons)
+    box = shapely.box(*shapely.total_bounds(polygons)).buffer(0.02, join_style="mitre")
+    lines = noded([*shapely.boundary(polygons), box.exterior])
+    faces = shapely.orient_polygons(np.array(shapely.get_parts(shapely.polygonize(lines)), dtype=object))
     levels = np.unique(np.round([z for part in parts for _, z0, z1 in part.prisms for z in (z0, z1)], 7))
     labels = _label(parts, profiles, polygons, faces, levels)
     return Partition(levels, faces, labels, *_neighbours(faces), tuple(parts))
-
-
-def _tile(polygons: NDArray[np.object_]) -> NDArray[np.object_]:
-    box = shapely.box(*shapely.total_bounds(polygons)).buffer(0.02, join_style="mitre")
-    lines = noded([*shapely.boundary(polygons), box.exterior])
-    faces = np.array(shapely.get_parts(shapely.polygonize(lines)), dtype=object)
-    return shapely.orient_polygons(faces)
 
 
 def _label(
@@ -79,24 +74,19 @@ def _label(
     inside = shapely.STRtree(shapely.point_on_surface(faces))
     which, members = inside.query(polygons, predicate="contains")
     faces_of = {profile: members[which == i] for i, profile in enumerate(profiles)}
-    labels = np.full((len(faces), len(levels) - 1), AMBIENT, dtype=np.int64)
+    labels, areas = np.full((len(faces), len(levels) - 1), AMBIENT, dtype=np.int64), shapely.area(faces)
     order = sorted(range(len(parts)), key=lambda i: (not parts[i].solid, i))
     for index in order:
         for profile, z0, z1 in parts[index].prisms:
             slabs = slice(*np.searchsorted(levels, np.round([z0, z1], 7)))
             block = labels[faces_of[profile], slabs]
             if parts[index].solid:
-                _refuse_overlap(parts, index, block, faces[faces_of[profile]])
+                solid = block != AMBIENT
+                if solid.any() and areas[faces_of[profile]][solid.any(axis=1)].sum() >= _OVERLAP:
+                    what = f"{parts[index].name} and {parts[block[solid][0]].name} overlap"
+                    raise InputError(what, "geometry", "parts may touch, not overlap")
             labels[faces_of[profile], slabs] = np.where(block == AMBIENT, index, block)
     return labels
-
-
-def _refuse_overlap(parts: Sequence[Part], index: int, block: Ints, faces: NDArray[np.object_]) -> None:
-    solid = block != AMBIENT
-    if not solid.any() or shapely.area(faces)[solid.any(axis=1)].sum() < _OVERLAP:
-        return
-    other = parts[block[solid][0]].name
-    raise InputError(f"{parts[index].name} and {other} overlap", "geometry", "parts may touch, not overlap")
 
 
 def half_edges(faces: NDArray[np.object_]) -> tuple[Array, Ints]:

@@ -21,7 +21,10 @@ def filled(cut: Partition) -> Partition:
         return cut
     takers = [i for i, part in enumerate(cut.parts) if not part.solid and not part.prisms]
     if not takers:
-        raise InputError(_where(cut, hidden), "geometry", "declare the fluid that fills it, or close it")
+        face, slab = np.argwhere(hidden)[0]
+        point, z = shapely.point_on_surface(cut.faces[face]), cut.levels[slab : slab + 2].mean()
+        what = f"closed void around x, y, z = {point.x * 1e3:.1f}, {point.y * 1e3:.1f}, {z * 1e3:.1f} mm"
+        raise InputError(what, "geometry", "declare the fluid that fills it, or close it")
     return replace(cut, labels=np.where(hidden, takers[0], cut.labels))
 
 
@@ -41,10 +44,3 @@ def _hidden(cut: Partition) -> Mask:
     second = np.concatenate([cell[b][beside], cell[:, 1:][above], np.full(len(open_cells), outside)])
     component = joined_groups(outside + 1, np.column_stack([first, second]))
     return void & (component[:-1].reshape(n_face, n_slab) != component[-1])
-
-
-def _where(cut: Partition, hidden: Mask) -> str:
-    face, slab = np.argwhere(hidden)[0]
-    point = shapely.point_on_surface(cut.faces[face])
-    z = cut.levels[slab : slab + 2].mean()
-    return f"closed void around x, y, z = {point.x * 1e3:.1f}, {point.y * 1e3:.1f}, {z * 1e3:.1f} mm"

@@ -44,12 +44,8 @@ def _fits(g: Geometry, radius: float, width: float) -> bool:
     half = math.pi / g.rotor.poles
     inside = max(math.hypot(x, y) for x, y in points) <= radius - 0.95 * g.rotor.bridge
     inside_pitch = all(abs(math.atan2(y, x)) <= _PITCH * half for x, y in points)
-    return inside and inside_pitch and _distance(points) >= _SHAFT * g.shaft.diameter / 2
-
-
-def _distance(corners_xy: Corners) -> float:
-    """Of a polygon's edges to the axis (m)."""
-    return min(_to_axis(a, b) for a, b in zip(corners_xy, [*corners_xy[1:], corners_xy[0]], strict=True))
+    nearest = min(_to_axis(a, b) for a, b in zip(points, [*points[1:], points[0]], strict=True))
+    return inside and inside_pitch and nearest >= _SHAFT * g.shaft.diameter / 2
 
 
 def _to_axis(a: tuple[float, float], b: tuple[float, float]) -> float:

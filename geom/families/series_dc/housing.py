@@ -41,7 +41,10 @@ def enclosure(g: Geometry, z: Axial) -> tuple[Part, ...]:
 
 def _walls(g: Geometry, z: Axial, r: Radii, bored: Sequence[Nozzle] | None) -> tuple[Prism, ...]:
     """The housing with bores, or for None without channels."""
-    finned = Profile(_finned(g, r), (shapes.circle_loop(r.yoke1),))
+    around = shapes.spread(g.housing.fins, math.pi / 2, g.housing.fin_spacing / r.shell)
+    angles = [a for a in around if not _over_foot(g, r, a)]
+    outside = shapes.finned_loop(r.shell, g.housing.fin_thickness, r.fins, angles) if angles else None
+    finned = Profile(outside or shapes.circle_loop(r.shell), (shapes.circle_loop(r.yoke1),))
     prisms: list[Prism] = []
     here = z.inner0
     for name, (z0, z1) in z.jackets.items():
@@ -50,14 +53,6 @@ def _walls(g: Geometry, z: Axial, r: Radii, bored: Sequence[Nozzle] | None) -> t
         prisms += [(jacket_ring(r), z0, z1)] if bores is None else jacket_walls(g, r, z0, z1, bores)
         here = z1
     return (*prisms, (finned, here, z.inner1))
-
-
-def _finned(g: Geometry, r: Radii) -> tuple[tuple[float, float, float], ...]:
-    around = shapes.spread(g.housing.fins, math.pi / 2, g.housing.fin_spacing / r.shell)
-    angles = [a for a in around if not _over_foot(g, r, a)]
-    if not angles:
-        return shapes.circle_loop(r.shell)
-    return shapes.finned_loop(r.shell, g.housing.fin_thickness, r.fins, angles)
 
 
 def _over_foot(g: Geometry, r: Radii, angle: float) -> bool:
