@@ -6,7 +6,7 @@ from typing import Any
 
 from geom import Machine
 from geom.one_thread import one_blas_thread
-from lumped.build.load_cases import load_cases
+from lumped.build.fixed_coefficients import load_cases
 from lumped.build.mesh_choice import MOST_UNKNOWNS, MeshChoice, chosen_mesh, size_of
 from lumped.build.pipeline import ACROSS, AXIAL, Built, Meshing, Progress, meshed, reduced, silent
 from lumped.condensation.greedy_enrichment import Enrichment, Size, checks, enrich

@@ -13,8 +13,17 @@ from itertools import pairwise
 import numpy as np
 
 from geom.constants import L_MIN, M3_H
-from lumped.circuits.hydraulics import Array, Duct, Passage, parallel_shares, pressure_drop, pumping_power, split
-from lumped.circuits.passages import Bore, Nozzles
+from lumped.circuits.hydraulics import (
+    Array,
+    Bore,
+    Duct,
+    Nozzles,
+    Passage,
+    parallel_shares,
+    pressure_drop,
+    pumping_power,
+    split,
+)
 from lumped.correlations.ducts import duct_film, schmidt_helical, staton_rectangle
 from lumped.correlations.info import Info
 from lumped.correlations.streams import LEAST, MOST, restretched, streamed, warmed

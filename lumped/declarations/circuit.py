@@ -3,8 +3,7 @@
 from collections.abc import Iterable
 
 from lumped.circuits.circuit import PER_M3S, Circuit, Cooler, Pass
-from lumped.circuits.hydraulics import Duct
-from lumped.circuits.passages import Bore, Nozzles
+from lumped.circuits.hydraulics import Bore, Duct, Nozzles
 from lumped.declarations.films import read_coolant
 from lumped.schemas.reader import Table, suggestion
 from lumped.transfer.exchanger import ARRANGEMENTS, Flow

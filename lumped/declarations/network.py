@@ -1,31 +1,35 @@
 """Networks declared by hand in network.toml. Every key is described in docs/network-toml.md."""
 
-from collections.abc import Callable, Container, Iterable, Mapping
+from collections.abc import Callable, Container, Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from geom.description.names import plain_name
 from geom.description.roles import Identity, Role, identity
 from geom.description.toml_file import read_toml
 from geom.errors import InputError
-from lumped.circuits.circuit import Circuit
 from lumped.declarations.links import flow_column, flow_law, mechanisms
 from lumped.declarations.loss_tables import deducted, loss_kinds, loss_laws
 from lumped.declarations.parameters import read_parameters
 from lumped.model.build import bare_network, node_link, node_source, stream, surface_place
 from lumped.model.network import NOTHING, Link, Network, Place, Source
 from lumped.model.quantities import INPUTS
-from lumped.model.soundness import checked_names, checked_path, islands
-from lumped.schemas.reader import Table, suggestion
+from lumped.model.topology import reached
+from lumped.schemas.reader import Table, excerpt, suggestion
 from lumped.sources.loss_laws import EDDY
 from lumped.transfer.laws import Law, Scaled
 from lumped.transfer.reversal import Direction, OneWay
 from lumped.transfer.streamed import Streamed
 
+if TYPE_CHECKING:
+    from lumped.circuits.circuit import Circuit
+
 SECTIONS = ("nodes", "surfaces", "means", "links", "streams", "losses", "circuits", "parameters")
 RIGHT = "a network.toml (docs/network-toml.md)"
+RESERVED = set("@#")  # of effects at places, and of shapes inside parts
 LARGEST_SHARE = 10.0  # that a law refers to: nothing is loaded tenfold, so 100 is a percentage
 
 
@@ -76,7 +80,7 @@ def _with_shares(data: Any, shares: Container[str], note: Callable[[str], None])
     return {key: _with_shares(x, shares, note) for key, x in data.items()}
 
 
-def load_circuits(path: str | Path) -> dict[str, Circuit]:
+def load_circuits(path: str | Path) -> "dict[str, Circuit]":
     """The coolant circuits of a network.toml, for pressure drop and pump power."""
     top = Table(read_toml(Path(path), RIGHT), str(path))
     return _circuits(top, top.tables("nodes"), top.table("network").words("boundaries"))
@@ -125,7 +129,7 @@ def _read(data: Mapping[str, Any], where: str) -> Network:
     return _checked(network, where)
 
 
-def _circuits(top: Table, nodes: Iterable[str], boundaries: Iterable[str]) -> dict[str, Circuit]:
+def _circuits(top: Table, nodes: Iterable[str], boundaries: Iterable[str]) -> "dict[str, Circuit]":
     """Loaded only where a file has some: the libraries behind their films take a while to load."""
     if "circuits" not in top:
         return {}
@@ -272,3 +276,40 @@ def _checked(network: Network, where: str) -> Network:
     if not np.any(network.C > 0.0):
         raise InputError("no node has a heat capacity", where, "[nodes.NAME] C_J_K = ..., or mass_kg with cp_J_kgK")
     return network
+
+
+def checked_names(names: Iterable[str], where: str) -> None:
+    """InputError for a name that messages, tables and effects (KIND@PLACE) could not tell apart."""
+    for name in names:
+        if not name.strip() or plain_name(name, where).strip() != name or set(name) & RESERVED:
+            right = f"letters that can be printed, none of {' '.join(sorted(RESERVED))}, no space at either end"
+            raise InputError(f"{excerpt(name)} cannot be a name", where, right)
+
+
+def islands(network: Network) -> Iterator[list[str]]:
+    """Groups of nodes that are joined to each other but to no boundary."""
+    neighbours: dict[int, set[int]] = {i: set() for i in range(network.size)}
+    groups = [sorted({int(i) for i in (*link.rows, *link.cols)}) for link in network.links]
+    for place in network.places.values():
+        if place.kind == "surface" and place.fluid:  # what washes it may be joined by an effect
+            groups.append([*map(int, place.states), network.column(place.fluid)])
+    for group in groups:
+        for i in group:
+            neighbours[i] |= set(group)
+    n = len(network.states)
+    left = {*range(n)} - {*reached(range(n, network.size), neighbours.__getitem__)}
+    while left:
+        island = set(reached([min(left)], neighbours.__getitem__))
+        yield [network.states[i] for i in sorted(island)]
+        left -= island
+
+
+def checked_path(path: Sequence[str], where: str) -> Sequence[str]:
+    """A stream's way; InputError where it passes a node twice, or goes nowhere."""
+    if len(path) < 2:
+        raise InputError(f"path = {list(path)} leads nowhere", where, "two or more nodes, the inlet first")
+    for name in path:
+        if list(path).count(name) > 1:
+            right = "each node once; a loop that returns is [circuits.NAME] with a reservoir"
+            raise InputError(f"path passes '{name}' {list(path).count(name)} times", where, right)
+    return path

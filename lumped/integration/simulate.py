@@ -15,9 +15,9 @@ from geom.errors import InputError, NoSolution
 from geom.table import Table, TableResult
 from geom.text import counted
 from lumped.integration.compiled import RUN, Compiled, Precision, compiled, hidden_states, reordered
-from lumped.integration.failure import failure
 from lumped.integration.reach import Reach
 from lumped.integration.record import Record, instants
+from lumped.integration.runaway import failure
 from lumped.model.network import Network, Parameter, Row
 from lumped.numerics import kernel
 from lumped.numerics.dense import factored

@@ -18,12 +18,12 @@ from lumped.correlations.info import Info
 from lumped.correlations.natural import churchill_chu_cylinder, churchill_chu_plate, mcadams_plate
 from lumped.correlations.streams import streamed
 from lumped.correlations.tabulate import film_tabulated
+from lumped.declarations.films import shaft_fan
 from lumped.machine.settings import Films
 from lumped.machine.shapes import Extent, extent, fins_of
 from lumped.schemas.reader import Table
 from lumped.transfer.laws import FILMS, FilmTable, Fixed, InputPower, Law, Radiation
 from lumped.transfer.properties import Fluid, air
-from lumped.transfer.shaft_fan import shaft_fan
 from lumped.transfer.streamed import Streamed
 
 SURFACES = ("horizontal cylinder", "vertical plate", "horizontal plate", "radial fins")

@@ -12,7 +12,7 @@ from dataclasses import dataclass, replace
 from geom.constants import L_MIN
 from geom.description.machine import Machine
 from geom.description.roles import Role
-from lumped.circuits.passages import Nozzles
+from lumped.circuits.hydraulics import Nozzles
 from lumped.correlations.info import Info
 from lumped.correlations.streams import restretched, streamed, warmed
 from lumped.declarations.films import read_coolant
