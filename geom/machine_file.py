@@ -87,11 +87,8 @@ def load_machine(source: str | Path) -> Machine:
     if path.suffix.lower() in IMPORTERS:
         return machine_from(import_draft(path).sections(), str(path))
     if path.suffix != ".toml" or not path.is_file():
-        raise InputError(
-            f"no machine {str(source)!r}",
-            "",
-            f"a .toml, .step{', '.join(['', *IMPORTERS])} file, or one of: {', '.join(library())}",
-        )
+        right = f"a .toml, .step{', '.join(['', *IMPORTERS])} file, or one of: {', '.join(library())}"
+        raise InputError(f"no machine {str(source)!r}", "", right)
     return machine_from(read_toml(path, "a machine file with [machine] and [geometry]"), str(path))
 
 

@@ -10,22 +10,8 @@ from geom.description.materials import Material, filled, material, with_properti
 from geom.description.part import Part, Port
 from geom.errors import InputError
 
-SECTIONS = (
-    "machine",
-    "ratings",
-    "geometry",
-    "outlines",
-    "materials",
-    "contacts",
-    "films",
-    "losses",
-    "fans",
-    "cooling",
-    "spray",
-    "sensors",
-    "calibration",
-    "bases",
-)
+SECTIONS: tuple[str, ...] = ("machine", "ratings", "geometry", "outlines", "materials", "contacts", "films", "losses")
+SECTIONS += ("fans", "cooling", "spray", "sensors", "calibration", "bases")
 LARGEST_RATING = 1e9  # in the unit of its key, as of all that a recording may hold
 ENVELOPE = "envelope_mm"
 

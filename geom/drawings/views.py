@@ -7,7 +7,7 @@ from html import escape
 from typing import Any
 
 from geom.description.machine import Machine
-from geom.description.palette import colour
+from geom.description.materials import colour
 from geom.description.part import Part
 from geom.description.profile import ArcGrid, Loop, Profile, edges
 from geom.description.roles import Role

@@ -8,8 +8,7 @@ import numpy as np
 from geom.arrays import Array, Ints
 from geom.description.machine import Machine
 from geom.description.part import Part
-from geom.meshing.partition import AMBIENT, Partition, partition
-from geom.meshing.voids import filled
+from geom.meshing.partition import AMBIENT, Partition, filled, partition
 
 
 @dataclass(frozen=True)

@@ -11,9 +11,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from geom.description.machine import Machine, step_sidecar
-from geom.description.materials import entry_of
+from geom.description.materials import colour, entry_of
 from geom.description.names import file_stem
-from geom.description.palette import colour
 from geom.description.part import CadShape, Helix, Part, Prism, Rod
 from geom.description.roles import Identity
 from geom.disk_cache import cache_file, recalled, stored

@@ -52,12 +52,9 @@ def _levels(solid: cq.Solid, name: str) -> list[float]:
             levels.append(face.Center().z)
         elif cosines.max() > _TILT:
             box = face.BoundingBox()
-            raise InputError(
-                f"a {face.geomType().lower()} face from z = {box.zmin:.4g} to {box.zmax:.4g} mm is not prismatic along"
-                " the axis",
-                name,
-                "faces must lie along z or normal to it: simplify the solid or leave it out",
-            )
+            what = f"a {face.geomType().lower()} face from z = {box.zmin:.4g} to {box.zmax:.4g} mm"
+            right = "faces must lie along z or normal to it: simplify the solid or leave it out"
+            raise InputError(f"{what} is not prismatic along the axis", name, right)
     levels.sort()
     return [z for i, z in enumerate(levels) if i == 0 or z - levels[i - 1] > _LEVEL]
 

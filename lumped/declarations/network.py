@@ -267,12 +267,9 @@ def _checked(network: Network, where: str) -> Network:
     # The network; InputError names the nodes that no heat can leave, and a network that stores none
     for island in islands(network):
         nodes = ", ".join(f"'{name}'" for name in island)
-        raise InputError(
-            f"no heat can leave {nodes}: nothing joins {'it' if len(island) == 1 else 'them'} to "
-            f"{' or '.join(network.boundaries) or 'a boundary'}",
-            where,
-            "a link, stream or surface to a boundary",
-        )
+        to = f"{'it' if len(island) == 1 else 'them'} to {' or '.join(network.boundaries) or 'a boundary'}"
+        right = "a link, stream or surface to a boundary"
+        raise InputError(f"no heat can leave {nodes}: nothing joins {to}", where, right)
     if not np.any(network.C > 0.0):
         raise InputError("no node has a heat capacity", where, "[nodes.NAME] C_J_K = ..., or mass_kg with cp_J_kgK")
     return network

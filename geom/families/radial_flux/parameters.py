@@ -11,7 +11,7 @@ from geom.description.geometry import Features, Geometry
 from geom.description.parameters import Measure, parameter_sets
 from geom.families.radial_flux import hairpin
 from geom.families.radial_flux.layout import Layout
-from geom.families.radial_flux.magnets import widest
+from geom.families.radial_flux.rotors import widest
 from geom.families.shaft_fan import fan_measures
 
 outer = Measure("the laminations' outer diameter", lambda g: g.stator.outer_diameter)
