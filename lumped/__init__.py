@@ -10,7 +10,7 @@ from geom.lazy import loaded_when_used
 if TYPE_CHECKING:
     from lumped.declarations.network import load_circuits as load_circuits, load_network as load_network
     from lumped.drives.coupled import Coupled as Coupled, coupled as coupled
-    from lumped.integration.audit import Audit as Audit, audit as audit
+    from lumped.integration.balance import Audit as Audit, audit as audit
     from lumped.integration.balance import Balance as Balance, balance as balance
     from lumped.integration.ensemble import dask_cluster as dask_cluster, ensemble as ensemble
     from lumped.integration.simulate import Record as Record, Run as Run, simulate as simulate

@@ -11,8 +11,7 @@ from geom.description.part import Part
 from geom.limits import MESH_POINTS
 from geom.meshing.blocks import Block, Column
 from geom.meshing.mesh import Contact, NamedMesh, Patch
-from geom.meshing.noding import GRID
-from geom.meshing.partition import AMBIENT, Partition
+from geom.meshing.partition import AMBIENT, GRID, Partition
 from geom.meshing.triangulate import Triangulation
 
 FaceName = Callable[[str, str], str]

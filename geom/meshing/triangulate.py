@@ -15,8 +15,7 @@ from geom.arrays import Array, Ints
 from geom.limits import MESH_POINTS
 from geom.meshing.blocks import Column
 from geom.meshing.delaunay import interior_points, nudged, triangulate_face
-from geom.meshing.noding import GRID
-from geom.meshing.partition import half_edges
+from geom.meshing.partition import GRID, half_edges
 
 _SLENDER = 15.0  # perimeter^2 / (4 area) beyond which a face is a layer: one element across is enough
 

@@ -15,8 +15,8 @@ from geom import Machine, NamedMesh, build_mesh
 from geom.description.materials import Material
 from geom.one_thread import one_blas_thread
 from geom.storage import cache_folder
+from lumped.condensation.condensed import Zone
 from lumped.condensation.reduction import Recipe, Reduction, reduce
-from lumped.condensation.zone import Zone
 from lumped.machine.motor import boundaries, fluids, motor_network, nominal_coefficients
 from lumped.machine.path import path_of
 from lumped.machine.shapes import wound

@@ -32,8 +32,7 @@ from fem.solvers.snapshots import (
 )
 from fem.solvers.solve import Factorise, Solve, Solver, film_columns
 from lumped.condensation.basis_cache import BasisCache, Centre
-from lumped.condensation.condensed import network_in
-from lumped.condensation.zone import Zone
+from lumped.condensation.condensed import Zone, network_in
 from lumped.model.network import Array, Network
 
 __all__ = ["FullPoint", "Recipe", "Reduction", "Zone", "reduce"]

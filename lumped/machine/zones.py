@@ -6,7 +6,7 @@ import numpy as np
 
 from geom.description.machine import Machine
 from geom.description.part import Part
-from lumped.condensation.zone import Zone
+from lumped.condensation.condensed import Zone
 from lumped.machine.shapes import laminated, radius, wound
 from lumped.model.network import Array
 

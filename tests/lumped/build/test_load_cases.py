@@ -13,7 +13,7 @@ from geom.description.roles import Role
 from lumped.build.fixed_coefficients import fluid_rises, rated_watts
 from lumped.build.network_size import accurate_network
 from lumped.build.pipeline import prepared
-from lumped.condensation.zone import Zone
+from lumped.condensation.condensed import Zone
 
 MACHINE = load_machine("ipmsm-48s8p-jacket")
 
