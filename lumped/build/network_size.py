@@ -60,11 +60,6 @@ class NetworkSize:
         }
 
 
-def accuracy_of(accuracy: float) -> Accuracy:
-    """Hot spots and points within `accuracy` percent of a part's own rise, means within half of it."""
-    return Accuracy(accuracy / 2, accuracy, accuracy)
-
-
 @one_blas_thread
 def accurate_network(
     machine: Machine, accuracy: float, size_m: float = 0.06, progress: Progress = silent, say: Progress = silent
@@ -114,7 +109,7 @@ def smallest_network(
     ready = meshed(machine, how or Meshing(size_m, segments, ACROSS, AXIAL * size_m), progress)
     progress("what the parts can look like")
     reduction = reduced(ready, recipe, motor_zones(machine))
-    cases, limit = load_cases(machine, reduction), accuracy_of(accuracy)
+    cases, limit = load_cases(machine, reduction), Accuracy(accuracy / 2, accuracy, accuracy)
     progress("error against number of states")
     at_points = [reduction.random_point(k) for k in range(points_each)]
     at_points += [reduction.nominal_point(), *(reduction.extreme_point(k) for k in range(points_each))]

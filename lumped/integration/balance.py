@@ -155,19 +155,16 @@ def _side(network: Network, link: Link) -> Array:
     if link.kind == "stream":
         return np.ones(n)
     for place, sign in zip(link.places, (1.0, -1.0), strict=True):
-        states = _states(network, place)
+        if place in network.places:
+            states = network.places[place].states
+            states = states[states < n]
+        else:
+            states = np.array([i for i, s in enumerate(network.states) if s == place], np.int64)
         if states.size:
             side = np.zeros(n)
             side[states] = sign
             return side
     return np.zeros(n)
-
-
-def _states(network: Network, place: str) -> Ints:
-    if place in network.places:
-        states = network.places[place].states
-        return states[states < len(network.states)]
-    return np.array([i for i, s in enumerate(network.states) if s == place], np.int64)
 
 
 @dataclass(frozen=True)

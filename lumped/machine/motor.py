@@ -33,7 +33,7 @@ from lumped.machine.hairpin import insulation
 from lumped.machine.jackets import FLOW, INLET, coolant_streams, outlet_film, outlets
 from lumped.machine.loss_sources import loss_inputs, sources
 from lumped.machine.parameters import parameters
-from lumped.machine.part_identities import declared, with_channels
+from lumped.machine.part_identities import declared
 from lumped.machine.path import cells_of, stem
 from lumped.machine.settings import contact_coefficients
 from lumped.machine.sprays import OIL_FLOW, RAIL
@@ -134,7 +134,10 @@ def motor_network(machine: Machine, condensed: Network) -> Network:
     around = surroundings(machine, contacts)
     ports = {} if around.cooling is None else outlets(machine, condensed, around.cooling)
     network = replace(condensed, places={**condensed.places, **ports, **means(machine, condensed)})
-    network = replace(with_channels(network), declared=declared(machine, network, around.contacts))
+    fluids_there = {n: p for n, p in network.places.items() if p.kind == "fluid" and stem(n) != n}
+    cells = {n: replace(p, channel=stem(n)) for n, p in fluids_there.items()}  # each says which jacket it belongs to
+    network = replace(network, places={**network.places, **cells})
+    network = replace(network, declared=declared(machine, network, around.contacts))
     faces = [place for place in network.places.values() if place.kind == "surface" and place.fluid]
     films = [link for face in faces for link in _film_links(network, face, around)]
     streams = [] if around.ways is None else fan_streams(network, machine.features, around.ways)

@@ -50,13 +50,10 @@ def _acting(network: Network) -> dict[str, list[tuple[str, float]]]:
     return out
 
 
-def _factors(network: Network, now: Mapping[str, float]) -> dict[str, float]:
-    return {p.name: factor(p, now[p.name])[0] for p in network.parameters}
-
-
 def multipliers(network: Network, values: Mapping[str, float] | None = None) -> dict[str, float]:
     """Target name -> multiplier, for every target that some parameter acts on."""
-    f = _factors(network, values_of(network, values))
+    now = values_of(network, values)
+    f = {p.name: factor(p, now[p.name])[0] for p in network.parameters}
     return {target: prod(f[name] ** exponent for name, exponent in on) for target, on in _acting(network).items()}
 
 
@@ -67,7 +64,8 @@ def slopes(
     if not parameters:
         return []
     now = values_of(network, values)
-    acting, f, by_name = _acting(network), _factors(network, now), {p.name: p for p in network.parameters}
+    acting, by_name = _acting(network), {p.name: p for p in network.parameters}
+    f = {name: factor(p, now[name])[0] for name, p in by_name.items()}
     out = []
     for parameter in parameters:
         if parameter.name not in by_name:

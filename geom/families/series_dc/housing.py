@@ -50,7 +50,7 @@ def _walls(g: Geometry, z: Axial, r: Radii, bored: Sequence[Nozzle] | None) -> t
     for name, (z0, z1) in z.jackets.items():
         prisms += [(finned, here, z0)] if here < z0 else []
         bores = None if bored is None else [nozzle for nozzle in bored if nozzle.jacket == name]
-        prisms += [(jacket_ring(r), z0, z1)] if bores is None else jacket_walls(g, r, z0, z1, bores)
+        prisms += [(shapes.ring(r.yoke1, r.jacket), z0, z1)] if bores is None else jacket_walls(g, r, z0, z1, bores)
         here = z1
     return (*prisms, (finned, here, z.inner1))
 
@@ -75,11 +75,6 @@ def _feet(g: Geometry, z: Axial, r: Radii) -> tuple[Prism, ...]:
     return tuple((foot, *span) for foot in (left, right) for span in spans)
 
 
-def jacket_ring(r: Radii) -> Profile:
-    """Section of a jacket between its channels."""
-    return shapes.ring(r.yoke1, r.jacket)
-
-
 def jacket_walls(g: Geometry, r: Radii, z0: float, z1: float, bored: Sequence[Nozzle]) -> list[Prism]:
     """The housing's wall around the channels of one jacket, with the bores of its ports."""
     if g.jacket.layout == "helical":
@@ -89,7 +84,7 @@ def jacket_walls(g: Geometry, r: Radii, z0: float, z1: float, bored: Sequence[No
         for sectors, a, b in _zigzag(g, r, z0, z1)
         for low, high, ports in slices(a, b, bored)
     ]
-    solid = jacket_ring(r)
+    solid = shapes.ring(r.yoke1, r.jacket)
     return [(solid, z0, z0 + g.jacket.rib), *pierced, (solid, z1 - g.jacket.rib, z1)]
 
 
