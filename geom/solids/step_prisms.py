@@ -3,8 +3,6 @@
 python -m geom.solids.step_prisms    {"path", "import"} as JSON on stdin; the prisms, or the fault, as its last line
 """
 
-from __future__ import annotations
-
 import json
 import os
 import subprocess
@@ -68,7 +66,7 @@ def _prism(loops: list[list[list[float]]], z0: float, z1: float) -> Prism:
     return Profile(outer, tuple(holes)), z0, z1
 
 
-def _solids(path: Path, options: Mapping[str, Any]) -> dict[str, list[cq.Solid]]:
+def _solids(path: Path, options: Mapping[str, Any]) -> "dict[str, list[cq.Solid]]":
     """Solids (mm) by name, turned and moved so that the machine's axis is z."""
     import cadquery as cq
 
@@ -106,8 +104,8 @@ def _assembly(path: Path) -> Any:
 
 
 def _without_excluded(
-    solids: dict[str, list[cq.Solid]], options: Mapping[str, Any], path: Path
-) -> dict[str, list[cq.Solid]]:
+    solids: "dict[str, list[cq.Solid]]", options: Mapping[str, Any], path: Path
+) -> "dict[str, list[cq.Solid]]":
     patterns, where = options.get("leave_out", []), f"{step_sidecar(path)} [import] leave_out"
     if not (isinstance(patterns, list) and all(isinstance(p, str) for p in patterns)):
         raise InputError(f"{patterns!r} is not a list of names", where, 'such as ["bolt*"]')
@@ -120,7 +118,7 @@ def _without_excluded(
     return rest
 
 
-def _all_sliced(solids: Mapping[str, list[cq.Solid]], path: Path) -> dict[str, tuple[Prism, ...]]:
+def _all_sliced(solids: "Mapping[str, list[cq.Solid]]", path: Path) -> dict[str, tuple[Prism, ...]]:
     """Prisms by name; one error that names every solid that cannot be sliced."""
     prisms, faults = {}, []
     for name, pieces in solids.items():
