@@ -16,7 +16,7 @@ from lumped.model.network import Link, Network, Source
 from lumped.numerics.heat_integrals import count
 from lumped.numerics.stages import Steps, stages, work
 from lumped.numerics.terms import END, ROW
-from lumped.transfer.laws import CONSTANT, TemperatureLaw
+from lumped.transfer.laws import CONSTANT
 from lumped.transfer.terms_value import temperature_value
 
 # Radau's quadrature of order five over a step, which does not look at its start (Hairer and Wanner 1996, sec. IV.5)
@@ -203,11 +203,8 @@ def audit(network: Network, record: Record, values: Mapping[str, float] | None =
 
 def _heat(source: Source, signals: Signals, way: Walk) -> float:
     factor = signals.along(source.name, source.law, way.at)
-    return float(np.sum(way.weight * factor * _over(source.law.temperature, source, way.x)))
-
-
-def _over(law: TemperatureLaw, source: Source, x: Array) -> Array | float:
-    if law == CONSTANT:
-        return 1.0
-    probe = x[:, source.probe.index] @ source.probe.weights
-    return np.array([temperature_value(law, float(T), 0.0) for T in probe])
+    law, over = source.law.temperature, np.ones(())
+    if law != CONSTANT:
+        probe = way.x[:, source.probe.index] @ source.probe.weights
+        over = np.array([temperature_value(law, float(T), 0.0) for T in probe])
+    return float(np.sum(way.weight * factor * over))

@@ -62,18 +62,16 @@ def _rotor(g: Geometry) -> float:
     return g.stator.bore_diameter / 2 - g.stator.air_gap
 
 
-def _pole(g: Geometry) -> float:
-    """Pole pitch at the rotor's surface or the iron under it, whichever is smaller."""
-    return min(2 * _rotor(g) * math.sin(math.pi / g.rotor.poles), _rotor(g) - g.shaft.diameter / 2)
-
-
 even_pitch = Measure("the pitch of fins spread evenly", _even_pitch)
 fin_pitch = Measure(
     "the fins' pitch, or 0.3 of the laminations where it is less",
     lambda g: min(g.housing.fin_spacing or _even_pitch(g), 0.3 * g.stator.outer_diameter),
 )
 channel = Measure("the channel's width (0.6 of it with one turn), or a sixth of the laminations, the smaller", _channel)
-pole = Measure("pole pitch or rotor iron, the smaller", _pole)
+pole = Measure(
+    "pole pitch or rotor iron, the smaller",
+    lambda g: min(2 * _rotor(g) * math.sin(math.pi / g.rotor.poles), _rotor(g) - g.shaft.diameter / 2),
+)
 magnet = Measure("the widest magnet that fits", widest)
 iron = Measure("rotor surface to shaft", lambda g: _rotor(g) - 0.55 * g.shaft.diameter)
 bar_pitch = Measure(

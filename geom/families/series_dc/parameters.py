@@ -124,11 +124,6 @@ def _port(g: Geometry) -> float:
     return min(wide, 3 * g.jacket.rib, _shell(g) / 4)
 
 
-def _outermost(g: Geometry) -> float:
-    r = Radii(g)
-    return max(r.fins, r.jacket) if g.jacket.sides else r.fins
-
-
 shell = Measure("the housing's radius", _shell)
 even_pitch = Measure("the pitch of fins spread evenly", _even_pitch)
 fin_pitch = Measure(
@@ -142,7 +137,9 @@ port = Measure(
     _port,
 )
 fan, fan_hub = fan_measures("housing", _shell, seat.span)
-outermost = Measure("the radius over fins or jacket", _outermost)
+outermost = Measure(
+    "the radius over fins or jacket", lambda g: max(Radii(g).fins, Radii(g).jacket) if g.jacket.sides else Radii(g).fins
+)
 beside = Measure("the inner side of a foot to the edge of the housing", lambda g: 0.95 * _shell(g) - g.feet.inner)
 stance = Measure("the width over the feet", lambda g: 2 * (g.feet.inner + g.feet.width))
 footing = Measure("the length over the feet", lambda g: _inside(g) - 2 * g.feet.inset)
