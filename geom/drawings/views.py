@@ -132,10 +132,14 @@ def _outline(region: Any) -> str:
 
 def _shape(part: Part, d: str, uncut: bool = False) -> str:
     look = ' opacity="0.35" stroke-dasharray="3 2"' if uncut else ""
-    rgb = ",".join(str(round(255 * value)) for value in colour(part.material))
-    style = f'fill="rgb({rgb})" fill-rule="evenodd" stroke="#333" stroke-width="0.4"{look}'
+    style = f'fill="{fill(part.material)}" fill-rule="evenodd" stroke="#333" stroke-width="0.4"{look}'
     return f'<path d="{d}" {style}><title>{escape(part.name)}</title></path>'
 
 
 def _air(d: str) -> str:
     return f'<path d="{d}" fill="white"/>'
+
+
+def fill(material: str) -> str:
+    rgb = ",".join(str(round(255 * value)) for value in colour(material))
+    return f"rgb({rgb})"

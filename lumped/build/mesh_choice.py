@@ -155,10 +155,7 @@ class _Looks:
 
     @cached_property
     def point(self) -> FixedCoefficients:
-        ready = self.ready(self.first)
-        machine = ready.machine
-        network = on_every_base(means_network(machine, reduced(ready, MEANS)))
-        return rated(machine, network, ready.films, ready.contacts)
+        return _at_rated_point(self.ready(self.first))
 
     def ready(self, how: Meshing) -> Prepared:
         return meshed(self.machine, how, lambda message: self.progress(f"estimating the error of the mesh: {message}"))
@@ -375,3 +372,9 @@ def counts_of(machine: Machine, how: Meshing) -> tuple[int, Mapping[str, int]]:
         midsides = wound(machine, part) or (how.bends is not None and how.bends.of(part))
         unknowns[part] = len(Elements.on(tets, mesh.points[points], midsides).xyz)
     return len(mesh.points), unknowns
+
+
+def _at_rated_point(ready: Prepared) -> FixedCoefficients:
+    machine = ready.machine
+    network = on_every_base(means_network(machine, reduced(ready, MEANS)))
+    return rated(machine, network, ready.films, ready.contacts)

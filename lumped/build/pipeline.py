@@ -182,12 +182,7 @@ def build(
     if key not in _built:
         while len(_built) >= MOST_BUILT:
             _built.pop(next(iter(_built)))
-        ready = prepared(machine, size_m, segments, progress, axial_m)
-        progress("network from the field")
-        reduction = reduced(ready, recipe)
-        network, small = networks_of(machine, reduction, recipe)
-        fewer = len(small.states) < len(network.states)
-        _built[key] = Built(machine, ready.mesh, network, ready.meshing, small if fewer else None)
+        _built[key] = _anew(machine, size_m, segments, recipe, progress, axial_m)
     return _built[key]
 
 
@@ -207,3 +202,14 @@ def means_network(machine: Machine, reduction: Reduction) -> Network:
 
 MOST_BUILT = 2  # machines: a command works on one, `carry` on pairs
 _built: dict[bytes, Built] = {}  # by content: nothing that is asked for has changed
+
+
+def _anew(
+    machine: Machine, size_m: float, segments: int, recipe: Recipe, progress: Progress, axial_m: float | None
+) -> Built:
+    ready = prepared(machine, size_m, segments, progress, axial_m)
+    progress("network from the field")
+    reduction = reduced(ready, recipe)
+    network, small = networks_of(machine, reduction, recipe)
+    fewer = len(small.states) < len(network.states)
+    return Built(machine, ready.mesh, network, ready.meshing, small if fewer else None)
