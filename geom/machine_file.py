@@ -12,6 +12,7 @@ from geom.description.machine import ENVELOPE, SECTIONS, Machine, check_ratings
 from geom.description.materials import read_entry
 from geom.description.names import checked_name
 from geom.description.outlines import read_outlines
+from geom.description.parameters import is_number
 from geom.description.part import Part
 from geom.description.reading import read_geometry
 from geom.description.toml_file import read_toml
@@ -195,17 +196,14 @@ def _refuse_outside_envelope(machine: Machine, where: str) -> None:
     if envelope is None:
         return
     place = f"{where} [ratings] envelope_mm"
-    if not isinstance(envelope, list) or len(envelope) != 3 or not all(_is_size(v) for v in envelope):
+    sizes = envelope if isinstance(envelope, list) else []
+    if len(sizes) != 3 or not all(is_number(size) and 0.0 < size <= LARGEST_MM for size in sizes):
         raise InputError(f"{envelope!r} is not an envelope", place, "write [length, width, height]")
-    for word, size, limit in zip(("length", "width", "height"), machine.extent, envelope):
+    for word, size, limit in zip(("length", "width", "height"), machine.extent, sizes):
         if size * 1e3 > limit + 1e-6:
             raise InputError(
                 f"the machine's {word} of {size * 1e3:.4g} mm exceeds {limit:.4g} mm", place, "make it fit"
             )
-
-
-def _is_size(value: Any) -> bool:
-    return isinstance(value, (int, float)) and not isinstance(value, bool) and 0.0 < value <= LARGEST_MM
 
 
 def _family(header: Mapping[str, Any], where: str) -> Family:

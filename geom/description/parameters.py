@@ -117,7 +117,7 @@ class Parameter:
     def checked_ratio(self, value: Any, where: str) -> float:
         """The ratio, or an InputError that names key, value and range."""
         assert self.of is not None
-        if not _number(value) or not (self.of.low <= value <= self.of.high or (self.off and value == 0)):
+        if not is_number(value) or not (self.of.low <= value <= self.of.high or (self.off and value == 0)):
             place = f"{where} [geometry.{self.group}] {self.ratio_name}"
             raise InputError(f"{value!r} is not possible", place, f"allowed: {self.allowed_ratio}")
         return float(value)
@@ -128,12 +128,13 @@ class Parameter:
         kinds = int if isinstance(self.default, int) else (int, float)
         return (
             isinstance(value, kinds)
-            and _number(value)
+            and is_number(value)
             and (self.low <= value <= self.high or (self.off and value == 0))
         )
 
 
-def _number(value: Any) -> bool:
+def is_number(value: Any) -> bool:
+    """What a file gave; true and false are no numbers."""
     return isinstance(value, int | float) and not isinstance(value, bool)
 
 

@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Any
 
 from geom.description.machine import step_sidecar
 from geom.description.names import plain_name
+from geom.description.parameters import is_number
 from geom.description.part import Prism
 from geom.description.profile import Profile
 from geom.errors import InputError
@@ -74,7 +75,8 @@ def _solids(path: Path, options: Mapping[str, Any]) -> "dict[str, list[cq.Solid]
     where = f"{step_sidecar(path)} [import]"
     if not isinstance(axis, str) or axis not in _ROTATIONS:
         raise InputError(f"{axis!r} is not an axis", f"{where} axis", f"one of {', '.join(_ROTATIONS)}")
-    if not (isinstance(origin, list) and len(origin) == 3 and all(_is_length(x) for x in origin)):
+    within = isinstance(origin, list) and all(is_number(x) and abs(x) <= LARGEST_MM for x in origin)
+    if not within or len(origin) != 3:
         raise InputError(
             f"{origin!r} is not a point", f"{where} origin_mm", f"[x, y, z], each within {LARGEST_MM:g} mm"
         )
@@ -88,10 +90,6 @@ def _solids(path: Path, options: Mapping[str, Any]) -> "dict[str, list[cq.Solid]
     if not by_name:
         raise InputError("no solids", str(path), RIGHT)
     return by_name
-
-
-def _is_length(x: object) -> bool:
-    return isinstance(x, int | float) and not isinstance(x, bool) and abs(x) <= LARGEST_MM
 
 
 def _assembly(path: Path) -> Any:

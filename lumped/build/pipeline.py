@@ -78,14 +78,10 @@ class Built:
     small: Network | None = None
 
     @property
+    @once
     def field(self) -> FieldModel:
         """Conduction on the mesh, assembled anew: two thirds of all the bytes, which few commands want."""
-        return _field_of(self)
-
-
-@once
-def _field_of(model: Built) -> FieldModel:
-    return field_of(model.machine, model.mesh, model.meshing.bends)
+        return field_of(self.machine, self.mesh, self.meshing.bends)
 
 
 def field_of(machine: Machine, mesh: NamedMesh, bends: Bends | None = None) -> FieldModel:
@@ -136,7 +132,10 @@ def prepared(
 def meshed(machine: Machine, how: Meshing, progress: Progress = silent) -> Prepared:
     """Mesh and conduction on a mesh of given fineness."""
     progress("mesh")
-    mesh = with_cells(machine, plain_mesh(machine, how))
+    mesh = plain_mesh(machine, how)
+    for jacket in (part.name for part in machine.fluids if part.material != "air"):  # its walls, along its coolant
+        path = path_of(machine, jacket)
+        mesh = cut(mesh, jacket, path.along, path.cells)
     progress(f"conduction on {len(mesh.points)} points")
     return Prepared(machine, mesh, field_of(machine, mesh, how.bends), *coefficients_on(machine, mesh), how)
 
@@ -150,14 +149,6 @@ def coefficients_on(machine: Machine, mesh: NamedMesh) -> tuple[dict[str, float]
     """Nominal films and contacts (W/m2/K) of the faces and contacts of a mesh."""
     faces = {name: (patch.part, patch.fluid) for name, patch in mesh.patches.items()}
     return nominal_coefficients(machine, faces, mesh.contacts)
-
-
-def with_cells(machine: Machine, mesh: NamedMesh) -> NamedMesh:
-    """The mesh with the walls of every jacket cut along the way of its coolant."""
-    for jacket in (part.name for part in machine.fluids if part.material != "air"):
-        path = path_of(machine, jacket)
-        mesh = cut(mesh, jacket, path.along, path.cells)
-    return mesh
 
 
 def reduced(ready: Prepared, recipe: Recipe, zones: Mapping[str, Zone] | None = None) -> Reduction:

@@ -41,17 +41,15 @@ def read_identities(
     for name, table in around.items():
         if name not in boundaries:
             raise table.error(f"'{name}' is not a boundary", suggestion(name, boundaries))
-    each = {name: _declared_identity(table) for name, table in {**nodes, **around}.items()}
-    out = {name: statement for name, statement in each.items() if statement is not None}
+    out: dict[str, Identity] = {}
+    for name, table in {**nodes, **around}.items():
+        role = Role(table.word("role", None, list(Role))) if "role" in table else None
+        turns = table.flag("turns") if "turns" in table else None
+        if role is not None or turns is not None:
+            out[name] = identity(role, turns)
     for table in around.values():
         table.close()
     return {**out, **{cell: identity(Role.COOLANT, False) for cell in cells}}
-
-
-def _declared_identity(table: Table) -> Identity | None:
-    role = Role(table.word("role", None, list(Role))) if "role" in table else None
-    turns = table.flag("turns") if "turns" in table else None
-    return None if role is None and turns is None else identity(role, turns)
 
 
 def load_network(
