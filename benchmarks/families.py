@@ -33,8 +33,7 @@ from geom.description.reading import read_geometry
 from geom.families.family import Family
 from geom.families.random_geometry import random_geometry
 from geom.machine_file import families, machine_from
-from geom.meshing.partition import partition
-from geom.meshing.voids import filled
+from geom.meshing.partition import filled, partition
 from scripts.published import write_rows
 
 WITHIN = 0.01  # of the exact volume

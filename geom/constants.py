@@ -1,7 +1,5 @@
 """Constants of nature, units, and what this house counts as sure: each stands here once."""
 
-from __future__ import annotations
-
 import math
 
 SIGMA = 5.670374419e-8  # W/m2/K4, Stefan and Boltzmann, CODATA 2018

@@ -4,8 +4,6 @@ All of them together take `geom.limits.CACHE_BYTES`; what was not used for longe
 none, and is made again. `thermoscope check --clean` empties the store.
 """
 
-from __future__ import annotations
-
 import hashlib
 import re
 import time
@@ -13,13 +11,11 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
 from os import utime
 from pathlib import Path
-from typing import TYPE_CHECKING, TypeVar
+from typing import TypeVar
 
+from geom.description.part import Part
 from geom.limits import CACHE_BYTES
 from geom.storage import atomic_write, write_whole
-
-if TYPE_CHECKING:
-    from geom.description.part import Part
 
 Result = TypeVar("Result")
 ENTRY = re.compile(r"stages\.json|[a-z][\w.-]*-[0-9a-f]{8,20}\.(brep|json|npz)")

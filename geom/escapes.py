@@ -1,7 +1,5 @@
 """Texts that others wrote, made safe for each kind of file. No writer relies on the rule that let a name in."""
 
-from __future__ import annotations
-
 import csv
 import io
 import re
@@ -27,15 +25,11 @@ def _cell(value: Any) -> Any:
     if not isinstance(value, str):
         return value
     text = visible(value)
-    return text if _is_number(text) else FORMULA.sub(r"\1'", text)
-
-
-def _is_number(text: str) -> bool:
     try:
         float(text)
     except ValueError:
-        return False
-    return True
+        return FORMULA.sub(r"\1'", text)
+    return text
 
 
 def c_comment(lines: Iterable[str]) -> str:

@@ -1,7 +1,5 @@
 """Names of a package that load their module when they are used: `import viz` loads no VTK."""
 
-from __future__ import annotations
-
 import ast
 import sys
 from collections.abc import Callable, Mapping

@@ -4,8 +4,6 @@ A limit stands far above what people measure and far below what a computer of 8 
 by its environment variable.
 """
 
-from __future__ import annotations
-
 import os
 import time
 from dataclasses import dataclass
@@ -38,12 +36,9 @@ class Limit:
     def check(self, amount: float, where: object, what: str = "asks for") -> None:
         """InputError where an amount is beyond; it says which limit, and how to raise it."""
         if amount > self.most:
-            raise InputError(
-                f"{what} {amount:,.0f} {self.unit}",
-                str(where),
-                f"at most {self.most:,} {self.unit}: the "
-                f"limit '{self.name}', raised by {self.variable}={self.most * 10}",
-            )
+            cure = f"the limit '{self.name}', raised by {self.variable}={self.most * 10}"
+            right = f"at most {self.most:,} {self.unit}: {cure}"
+            raise InputError(f"{what} {amount:,.0f} {self.unit}", str(where), right)
 
 
 BYTES = Limit("bytes", 2**29, "bytes", "of a recording in memory: a day of 50 channels at 1 Hz is a tenth of that")

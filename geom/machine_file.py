@@ -1,7 +1,5 @@
 """Machine files: the library, the families, and from a file's tables, or a STEP file, to a machine."""
 
-from __future__ import annotations
-
 import tomllib
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
@@ -14,6 +12,7 @@ from geom.description.machine import ENVELOPE, SECTIONS, Machine, check_ratings
 from geom.description.materials import read_entry
 from geom.description.names import checked_name
 from geom.description.outlines import read_outlines
+from geom.description.parameters import is_number
 from geom.description.part import Part
 from geom.description.reading import read_geometry
 from geom.description.toml_file import read_toml
@@ -89,11 +88,8 @@ def load_machine(source: str | Path) -> Machine:
     if path.suffix.lower() in IMPORTERS:
         return machine_from(import_draft(path).sections(), str(path))
     if path.suffix != ".toml" or not path.is_file():
-        raise InputError(
-            f"no machine {str(source)!r}",
-            "",
-            f"a .toml, .step{', '.join(['', *IMPORTERS])} file, or one of: {', '.join(library())}",
-        )
+        right = f"a .toml, .step{', '.join(['', *IMPORTERS])} file, or one of: {', '.join(library())}"
+        raise InputError(f"no machine {str(source)!r}", "", right)
     return machine_from(read_toml(path, "a machine file with [machine] and [geometry]"), str(path))
 
 
@@ -166,20 +162,16 @@ def completed(sections: Mapping[str, Any], where: str) -> Mapping[str, Any]:
     tables = _without(original, ["machine", "name"])
     for key in without if isinstance(without, list) else [without]:
         try:
-            tables = _without(tables, _words_of_key(key))
+            # The words of a key with dots, as TOML reads it: 'contacts."base|foot"' has contacts and base|foot.
+            words, inner = [], tomllib.loads(f"{key} = 0")
+            while isinstance(inner, dict):
+                ((word, inner),) = inner.items()
+                words.append(word)
+            tables = _without(tables, words)
         except ValueError:
             what, right = f"without: {name} has no {str(key)[:60]!r}", """such as ["fans", 'contacts."base|foot"']"""
             raise InputError(what, place, right) from None
     return _overlaid(tables, {**sections, "machine": new_header})
-
-
-def _words_of_key(key: Any) -> list[str]:
-    """The words of a key with dots, as TOML reads it: 'contacts."base|foot"' has contacts and base|foot."""
-    words, inner = [], tomllib.loads(f"{key} = 0")
-    while isinstance(inner, dict):
-        ((word, inner),) = inner.items()
-        words.append(word)
-    return words
 
 
 def _without(table: Mapping[str, Any], words: Sequence[str]) -> dict[str, Any]:
@@ -204,17 +196,14 @@ def _refuse_outside_envelope(machine: Machine, where: str) -> None:
     if envelope is None:
         return
     place = f"{where} [ratings] envelope_mm"
-    if not isinstance(envelope, list) or len(envelope) != 3 or not all(_is_size(v) for v in envelope):
+    sizes = envelope if isinstance(envelope, list) else []
+    if len(sizes) != 3 or not all(is_number(size) and 0.0 < size <= LARGEST_MM for size in sizes):
         raise InputError(f"{envelope!r} is not an envelope", place, "write [length, width, height]")
-    for word, size, limit in zip(("length", "width", "height"), machine.extent, envelope):
+    for word, size, limit in zip(("length", "width", "height"), machine.extent, sizes):
         if size * 1e3 > limit + 1e-6:
             raise InputError(
                 f"the machine's {word} of {size * 1e3:.4g} mm exceeds {limit:.4g} mm", place, "make it fit"
             )
-
-
-def _is_size(value: Any) -> bool:
-    return isinstance(value, (int, float)) and not isinstance(value, bool) and 0.0 < value <= LARGEST_MM
 
 
 def _family(header: Mapping[str, Any], where: str) -> Family:

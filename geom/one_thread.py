@@ -2,8 +2,6 @@
 each other. A build of `pmsm-m1` takes 2.5 times as long with two.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from functools import wraps
 from typing import ParamSpec, TypeVar

@@ -1,7 +1,5 @@
 """What other installed packages add to the tool: objects named by entry points of the group "thermoscope.GROUP"."""
 
-from __future__ import annotations
-
 import sys
 from functools import cache
 from importlib.metadata import EntryPoint, distributions

@@ -1,7 +1,5 @@
 """Recordings are counted before they are kept: bytes, rows and columns, in pieces that need no memory themselves."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Iterable, Iterator
 from pathlib import Path

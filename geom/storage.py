@@ -1,7 +1,5 @@
 """Files written whole or not at all, one writer at a time, and the folder of what is kept."""
 
-from __future__ import annotations
-
 import errno
 import os
 import re

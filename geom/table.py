@@ -1,7 +1,5 @@
 """One table of results: terminal, pages, workbooks, JSON and DataFrames show the same one."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
@@ -37,7 +35,7 @@ class Table:
         columns: str,
         marked: Sequence[str] = (),
         **computed: Callable[[Any], Any],
-    ) -> Table:
+    ) -> "Table":
         """A row per record, which is a mapping or an object.
 
         columns : "NAME=KEY | *NAME=KEY.KEY | NAME": a star keeps a column, without a key the name is one; what a record

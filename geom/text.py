@@ -1,7 +1,5 @@
 """Results as plain text: what a script or a notebook shows of them."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from math import floor, log10
 from typing import Any

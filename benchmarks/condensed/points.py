@@ -14,7 +14,7 @@ import numpy as np
 from fem.solvers.snapshots import random_coefficients
 from fem.solvers.solve import coupled, film_columns
 from lumped.build.crosscheck import fluid_nodes
-from lumped.build.load_cases import rated_streams, rated_watts
+from lumped.build.fixed_coefficients import rated_streams, rated_watts
 from lumped.build.network_size import NetworkSize
 from lumped.condensation.linear import linear, unit_load
 from lumped.condensation.reduction import Reduction

@@ -6,8 +6,6 @@ contact and film, enters linearly:
     K = K0 + sum_c g_c K_c + sum_p h_p K_p
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Collection, Mapping
 from dataclasses import dataclass
 from functools import cached_property

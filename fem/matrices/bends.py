@@ -4,22 +4,17 @@ What is found on one mesh serves on another: an edge does as the nearest one did
 apart. So it needs no more than points.
 """
 
-from __future__ import annotations
-
 import hashlib
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property, partial
-from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
+from fem.matrices.elements import Midsides
 from geom.arrays import Array as Floats
-
-if TYPE_CHECKING:
-    from fem.matrices.elements import Midsides
 
 Bools = NDArray[np.bool_]
 
@@ -44,7 +39,7 @@ class Bends:
     parts: Mapping[str, Floats]
 
     @classmethod
-    def everywhere(cls, parts: list[str]) -> Bends:
+    def everywhere(cls, parts: list[str]) -> "Bends":
         """Every edge of these parts."""
         return cls({part: np.array([[0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0]]) for part in parts})
 

@@ -1,7 +1,5 @@
 """One part of the machine: its own conduction (nothing flows through its skin) and heat capacity."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from functools import cached_property
 

@@ -11,8 +11,6 @@ on a rectangle the eight others span all parabolas (the serendipity element), an
 Source: Zienkiewicz and Taylor 2000, "The finite element method", volume 1, 8.6.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cache, cached_property
@@ -58,7 +56,7 @@ class Elements:
     nodes: sp.csr_array
 
     @classmethod
-    def on(cls, tets: Ints, corners: Floats, midsides: Midsides) -> Elements:
+    def on(cls, tets: Ints, corners: Floats, midsides: Midsides) -> "Elements":
         """corners (m, 3) m;  midsides : which edges have an unknown in their middle"""
         m = len(corners)
         linear = cls(tets, tets, corners, np.empty(0, np.int64), sp.eye_array(m, format="csr"))

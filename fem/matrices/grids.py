@@ -1,7 +1,5 @@
 """Structured meshes of boxes and rings with named parts: problems whose answer is known, and small examples."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from itertools import permutations
 
@@ -62,7 +60,9 @@ def _tets(number: Ints) -> Ints:
 def named(points: Floats, tets: Ints, part: Naming, fluid: Naming) -> NamedMesh:
     """Name the regions, outer faces and contacts of a tetrahedral mesh."""
     names = np.asarray(part(points[tets].mean(1)))
-    tets, names = _positive(points, tets[names != ""]), names[names != ""]
+    tets, names = tets[names != ""], names[names != ""]
+    negative = np.linalg.det(points[tets[:, 1:]] - points[tets[:, :1]]) < 0
+    tets = np.where(negative[:, None], tets[:, [0, 1, 3, 2]], tets)
     parts, region = np.unique(names, return_inverse=True)
     faces = np.sort(tets[:, FACES], -1).reshape(-1, 3)
     # One number per face: sorting rows would take ten times as long. Good for two million points.
@@ -76,11 +76,6 @@ def named(points: Floats, tets: Ints, part: Naming, fluid: Naming) -> NamedMesh:
     common = (count == 2) & (owner[first] != second)
     contacts = _contacts(unique[common], parts, owner[first[common]], second[common])
     return NamedMesh(points, tets, region, tuple(map(str, parts)), patches, contacts)
-
-
-def _positive(points: Floats, tets: Ints) -> Ints:
-    edge = points[tets[:, 1:]] - points[tets[:, :1]]
-    return np.where((np.linalg.det(edge) < 0)[:, None], tets[:, [0, 1, 3, 2]], tets)
 
 
 def _patches(points: Floats, facets: Ints, owner: NDArray[np.str_], fluid: Naming) -> dict[str, Patch]:

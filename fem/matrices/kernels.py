@@ -3,8 +3,6 @@
 Cells are (m, k) point numbers, k = 3 for triangles and 4 for tetrahedra.
 """
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

@@ -3,8 +3,6 @@
 Each term is a small object: what it takes out of the solid, and the derivative.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from typing import Protocol
 

@@ -1,7 +1,5 @@
 """Surfaces: one side of a face, what washes it, and the two sides of a contact."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from functools import cache
 

@@ -5,8 +5,6 @@ touch (hexagonal packing; a square one, which leaves less room between neighbour
 cell of their own (`flat_cell`), for any fill.
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cache

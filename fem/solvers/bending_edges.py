@@ -4,8 +4,6 @@ Two estimates: what each edge costs the hot spots in the first order, from one f
 where points near a hot spot moved once the cheapest went without a middle, which no first order sees.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Protocol

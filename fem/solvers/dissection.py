@@ -4,8 +4,6 @@ Source: George 1973, "Nested dissection of a regular finite element mesh"; of se
 one with the smallest separator is kept, and thinned to the fewest nodes that do.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from typing import NamedTuple
 

@@ -5,8 +5,6 @@ few of their combinations; here each part is solved for by itself at many more, 
 (Oversampling of local problems: Babuska and Lipton 2011, Buhr and Smetana 2018.)
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Mapping
 
 import numpy as np

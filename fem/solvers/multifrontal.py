@@ -3,8 +3,6 @@
 Source: Duff and Reid 1983; Liu 1992, "The multifrontal method for sparse matrix solution".
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from functools import cached_property
 

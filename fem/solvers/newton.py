@@ -3,8 +3,6 @@
 At rest by Newton, over time by the L-stable TR-BDF2; fluids hold no heat.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 

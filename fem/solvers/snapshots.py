@@ -4,8 +4,6 @@ A part's field is its mean plus shapes. The shapes are found in the part's own s
 its sides of contacts and films at nominal coefficients), so the separate pieces of one part are told apart too.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 
@@ -207,19 +205,16 @@ def _each(
     """Of every part, from fields (n, k) of it, in two processes where there is room."""
 
     def principal(name: str) -> Principal:
-        return _principal(field.blocks[name], columns(name, field.blocks[name]), energy[name])
+        block, S, A = field.blocks[name], columns(name, field.blocks[name]), energy[name]
+        S -= (block.w @ S) / block.volume
+        each = (slice(k, k + CHUNK) for k in range(0, S.shape[1], CHUNK))
+        strength, U = np.linalg.eigh(np.hstack([S.T @ (A @ S[:, some]) for some in each]))
+        # A Gram matrix keeps half the digits.
+        keep = np.flatnonzero(strength > 1e-13 * strength[-1])[::-1]
+        # In single precision: fields are wrong by a ten-millionth, networks by a thousandth.
+        return Principal(strength[keep], (S @ (U[:, keep] / np.sqrt(strength[keep]))).astype(np.float32))
 
     return dict(zip(field.blocks, in_two_processes(principal, list(field.blocks), field.n), strict=True))
-
-
-def _principal(block: Block, S: Floats, A: sp.csr_array) -> Principal:
-    S -= (block.w @ S) / block.volume
-    each = (slice(k, k + CHUNK) for k in range(0, S.shape[1], CHUNK))
-    strength, U = np.linalg.eigh(np.hstack([S.T @ (A @ S[:, some]) for some in each]))
-    # A Gram matrix keeps half the digits.
-    keep = np.flatnonzero(strength > 1e-13 * strength[-1])[::-1]
-    # In single precision: fields are wrong by a ten-millionth, networks by a thousandth.
-    return Principal(strength[keep], (S @ (U[:, keep] / np.sqrt(strength[keep]))).astype(np.float32))
 
 
 def bases(
@@ -235,21 +230,16 @@ def bases(
     last : of the same principal fields; those of a part that keeps its number are taken over
     """
     favour = {name: (weights or {}).get(name, 1.0) ** 2 for name in principal}
-    least = _least(np.concatenate([p.strength * favour[n] for n, p in principal.items()]), len(principal), recipe)
+    # Energy a shape must exceed to be kept
+    least, strength = recipe.tolerance**2, np.concatenate([p.strength * favour[n] for n, p in principal.items()])
+    if recipe.max_states is not None and recipe.max_states - len(principal) < len(strength):
+        least = max(least, float(np.sort(strength)[::-1][max(recipe.max_states - len(principal), 0)]))
     counts = {name: int(np.sum(p.strength * favour[name] > least)) for name, p in principal.items()}
     unchanged = {name: basis for name, basis in (last or {}).items() if len(basis.capacity) == counts[name]}
     return {
         name: unchanged.get(name) or _shaped(block, principal[name].fields[:, : counts[name]], energy[name])
         for name, block in field.blocks.items()
     }
-
-
-def _least(strength: Floats, parts: int, recipe: Recipe) -> float:
-    """Energy a shape must exceed to be kept."""
-    least = recipe.tolerance**2
-    if recipe.max_states is None or recipe.max_states - parts >= len(strength):
-        return least
-    return max(least, float(np.sort(strength)[::-1][max(recipe.max_states - parts, 0)]))
 
 
 def _shaped(block: Block, Phi: NDArray[np.floating], A: sp.csr_array) -> Basis:

@@ -1,7 +1,5 @@
 """Steady solutions of the whole machine, with fluids as lumped nodes, and what they balance to."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, Protocol, TypeVar

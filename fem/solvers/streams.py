@@ -8,8 +8,6 @@ which a film of (exp(h A / mcp) - 1) mcp / A onto the cell's outlet temperature 
 nodes with films, and heat is conserved to rounding.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 

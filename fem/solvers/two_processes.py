@@ -1,7 +1,5 @@
 """Independent solutions in two processes: SciPy holds Python's lock while it factorises, so threads would wait."""
 
-from __future__ import annotations
-
 import ctypes
 import os
 import pickle

@@ -8,8 +8,6 @@ The other base's parts are called "foot.plate" and "base.plate" and sit on the f
 own one; conduction knows no gravity. Its materials, contacts and films are those of its own file.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable, Mapping
 from dataclasses import replace

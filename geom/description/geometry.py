@@ -1,7 +1,5 @@
 """A machine's dimensions as the families read them, and what they declare for formulas that solids do not say."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from types import SimpleNamespace

@@ -1,7 +1,5 @@
 """A machine: its parts, its fluids, its materials, and the sections others read."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
@@ -9,25 +7,12 @@ from typing import Any
 
 from geom.description.geometry import NO_FEATURES, Features, Geometry
 from geom.description.materials import Material, filled, material, with_properties
+from geom.description.parameters import is_number
 from geom.description.part import Part, Port
 from geom.errors import InputError
 
-SECTIONS = (
-    "machine",
-    "ratings",
-    "geometry",
-    "outlines",
-    "materials",
-    "contacts",
-    "films",
-    "losses",
-    "fans",
-    "cooling",
-    "spray",
-    "sensors",
-    "calibration",
-    "bases",
-)
+SECTIONS: tuple[str, ...] = ("machine", "ratings", "geometry", "outlines", "materials", "contacts", "films", "losses")
+SECTIONS += ("fans", "cooling", "spray", "sensors", "calibration", "bases")
 LARGEST_RATING = 1e9  # in the unit of its key, as of all that a recording may hold
 ENVELOPE = "envelope_mm"
 
@@ -35,7 +20,7 @@ ENVELOPE = "envelope_mm"
 def check_ratings(sections: Mapping[str, Any], where: str) -> None:
     """InputError where [ratings] holds anything but numbers and an envelope."""
     for key, value in sections.get("ratings", {}).items():
-        fits = isinstance(value, int | float) and not isinstance(value, bool) and 0.0 <= value <= LARGEST_RATING
+        fits = is_number(value) and 0.0 <= value <= LARGEST_RATING
         if key != ENVELOPE and not fits:
             right = f"a number from 0 to {LARGEST_RATING:g}"
             raise InputError(f"{key} = {str(value)[:40]!r} is not possible", f"{where} [ratings]", right)

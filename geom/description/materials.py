@@ -1,7 +1,8 @@
-"""What things are made of: one table, every value with its source and spread."""
+"""What things are made of: one table, every value with its source and spread; and a steady colour for each."""
 
-from __future__ import annotations
-
+import colorsys
+import csv
+import hashlib
 import tomllib
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
@@ -213,3 +214,17 @@ def _bundle(mixture: Mixture) -> tuple[float, float]:
     across, lengthwise = winding_conductivity(mixture.fill, mixture.k_conductor, mixture.k_between)
     across = lengthwise if mixture.shape == "bar" else across
     return across, mixture.along * lengthwise + (1 - mixture.along) * across
+
+
+with Path(__file__).with_name("palette.csv").open(encoding="utf-8", newline="") as _file:
+    _, *_rows = csv.reader(_file)
+_COLOURS = {word: (float(red), float(green), float(blue)) for word, red, green, blue in _rows}
+
+
+def colour(material: str) -> tuple[float, float, float]:
+    """Red, green, blue (0 to 1): copper is copper, what is not listed gets a pale hue from its name."""
+    for word, rgb in _COLOURS.items():
+        if word in material:
+            return rgb
+    hue = int(hashlib.sha256(material.encode()).hexdigest()[:4], 16) / 65535
+    return colorsys.hsv_to_rgb(hue, 0.15, 0.75)

@@ -1,7 +1,5 @@
 """What a file may call a thing: one rule for every name, said where the name is read."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from typing import Any
 

@@ -1,7 +1,5 @@
 """[outlines] of a machine file: shapes in the plane that no parameter of a family describes, each repeated around."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass

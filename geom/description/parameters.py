@@ -4,8 +4,6 @@ Most lengths are measured in others (`Scale`): a file gives the length itself (t
 (tooth_ratio), or neither; then it has the proportion of the default machine. Any ratios within their bounds fit.
 """
 
-from __future__ import annotations
-
 import csv
 import math
 from collections.abc import Callable, Mapping
@@ -33,7 +31,7 @@ class Measure:
     span: Length
     start: Length = lambda g: 0.0
 
-    def __call__(self, low: float, high: float) -> Scale:
+    def __call__(self, low: float, high: float) -> "Scale":
         return Scale(self.name, low, high, self.span, self.start)
 
 
@@ -119,7 +117,7 @@ class Parameter:
     def checked_ratio(self, value: Any, where: str) -> float:
         """The ratio, or an InputError that names key, value and range."""
         assert self.of is not None
-        if not _number(value) or not (self.of.low <= value <= self.of.high or (self.off and value == 0)):
+        if not is_number(value) or not (self.of.low <= value <= self.of.high or (self.off and value == 0)):
             place = f"{where} [geometry.{self.group}] {self.ratio_name}"
             raise InputError(f"{value!r} is not possible", place, f"allowed: {self.allowed_ratio}")
         return float(value)
@@ -130,12 +128,13 @@ class Parameter:
         kinds = int if isinstance(self.default, int) else (int, float)
         return (
             isinstance(value, kinds)
-            and _number(value)
+            and is_number(value)
             and (self.low <= value <= self.high or (self.off and value == 0))
         )
 
 
-def _number(value: Any) -> bool:
+def is_number(value: Any) -> bool:
+    """What a file gave; true and false are no numbers."""
     return isinstance(value, int | float) and not isinstance(value, bool)
 
 

@@ -1,7 +1,5 @@
 """A part: a name, a material and the prisms it is made of."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterable
 from dataclasses import dataclass

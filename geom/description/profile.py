@@ -1,7 +1,5 @@
 """2-D profiles with exact arcs: the one description that CAD, mesh and hand formulas share."""
 
-from __future__ import annotations
-
 import math
 from bisect import bisect
 from collections import defaultdict
@@ -76,15 +74,15 @@ class Profile:
         x, y = zip(*points)
         return min(x), min(y), max(x), max(y)
 
-    def rotated(self, angle: float) -> Profile:
+    def rotated(self, angle: float) -> "Profile":
         """The same profile turned about the axis by `angle` (rad, anticlockwise)."""
         return Profile(_turned(self.outer, angle), tuple(_turned(hole, angle) for hole in self.holes))
 
-    def scaled(self, factor: float) -> Profile:
+    def scaled(self, factor: float) -> "Profile":
         """The same profile in other units."""
         return Profile(_scaled(self.outer, factor), tuple(_scaled(hole, factor) for hole in self.holes))
 
-    def to_polygon(self, grid: ArcGrid) -> Polygon:
+    def to_polygon(self, grid: "ArcGrid") -> "Polygon":
         """Faceted shapely polygon; profiles faceted on the same grid share their vertices."""
         from shapely import Polygon
 

@@ -1,7 +1,5 @@
 """The [geometry] of a machine file: what it gives, and what follows in the proportions of the default machine."""
 
-from __future__ import annotations
-
 import difflib
 from collections.abc import Iterable, Mapping
 from functools import cache

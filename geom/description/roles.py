@@ -1,7 +1,5 @@
 """What a part, a node, a fluid or a boundary is: its role, never read out of its name, and how that is known."""
 
-from __future__ import annotations
-
 import tomllib
 import unicodedata
 from collections.abc import Mapping

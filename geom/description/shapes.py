@@ -1,7 +1,5 @@
 """Profiles that motors are made of. Lengths in m, angles in rad; a shape lies along +x until rotated."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 

@@ -1,7 +1,5 @@
 """TOML files as dictionaries, or one message that says what is wrong with the file."""
 
-from __future__ import annotations
-
 import tomllib
 from pathlib import Path
 from typing import Any

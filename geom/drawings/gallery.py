@@ -1,7 +1,5 @@
 """The library at a glance: what every shipped machine is, weighs and measures, how it is cooled, where it is from."""
 
-from __future__ import annotations
-
 import re
 from dataclasses import dataclass, replace
 from html import escape
@@ -30,15 +28,12 @@ class Entry:
 
 def catalogue() -> list[Entry]:
     """All machines of the library, by name."""
-    return [entry_of(load_machine(name)) for name in library()]
-
-
-def entry_of(machine: Machine) -> Entry:
-    mass = sum(part.volume * machine.material_of(part.name).rho for part in machine.parts)
-    m, parts = machine, len(machine.parts)
-    return Entry(
-        m.name, m.family, m.description, parts, mass, m.extent, cooling_of(m), source=m.source, assumed=m.assumed
-    )
+    out = []
+    for m in map(load_machine, library()):
+        mass = sum(part.volume * m.material_of(part.name).rho for part in m.parts)
+        size, words = (len(m.parts), mass, m.extent), (cooling_of(m), m.source, m.assumed)
+        out.append(Entry(m.name, m.family, m.description, *size, *words))
+    return out
 
 
 def cooling_of(machine: Machine) -> str:

@@ -1,7 +1,5 @@
 """The two sections of a machine as SVG shapes (mm, y downwards), from the profiles that are meshed."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 from functools import cached_property
@@ -9,7 +7,7 @@ from html import escape
 from typing import Any
 
 from geom.description.machine import Machine
-from geom.description.palette import colour
+from geom.description.materials import colour
 from geom.description.part import Part
 from geom.description.profile import ArcGrid, Loop, Profile, edges
 from geom.description.roles import Role

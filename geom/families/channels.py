@@ -1,7 +1,5 @@
 """Liquid jackets of every family: channels around the axis, as rings and as helices, and ports with their bores."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass

@@ -4,8 +4,6 @@ Frame, housing, bearings and base are those of the other machines with a round h
 has tapered slots and the rotor is plain iron.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterator
 from dataclasses import replace

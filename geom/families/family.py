@@ -1,7 +1,5 @@
 """What a family of machines is."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 

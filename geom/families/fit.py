@@ -1,7 +1,5 @@
 """Values that are allowed one by one but do not fit together: the first that does not is refused."""
 
-from __future__ import annotations
-
 from geom.description.geometry import Geometry
 from geom.errors import InputError
 

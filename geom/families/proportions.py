@@ -4,8 +4,6 @@ Any ratios within their bounds fit. So where a machine cannot be, some length is
 its bounds, one after another, they end in a machine.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Mapping
 from typing import Any
 

@@ -1,7 +1,5 @@
 """Random machines of a family: every parameter drawn within its documented bounds, all by themselves."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

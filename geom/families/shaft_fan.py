@@ -1,7 +1,5 @@
 """An axial fan in a cowl on the left end of a machine, its wheel on the shaft; meshed where the file asks for it."""
 
-from __future__ import annotations
-
 import math
 
 from geom.description import shapes

@@ -1,7 +1,5 @@
 """What drawings do not know: frame and cooling by the name of a template, contacts, losses to begin with."""
 
-from __future__ import annotations
-
 import math
 from typing import Any
 

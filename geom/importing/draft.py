@@ -1,7 +1,5 @@
 """A machine file in the making: every value with its source, and what of the other program's file went nowhere."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field

@@ -1,7 +1,5 @@
 """Drawings (.dxf): lines and arcs of every layer in metres around the machine's axis, and the loops they close."""
 
-from __future__ import annotations
-
 import cmath
 import itertools
 import math
@@ -249,16 +247,12 @@ def edges_of(loop: Loop) -> list[Edge]:
 
 def _welded(edges: Sequence[Edge]) -> list[Edge]:
     """With one point for ends that nearly meet, circles around the axis as such, and nothing twice."""
-    from scipy.sparse import coo_array
-    from scipy.sparse.csgraph import connected_components
-    from scipy.spatial import cKDTree
+    from geom.groups import near_groups
 
     if not edges:
         return []
     z = np.array([end for edge in edges for end in edge[:2]])
-    pairs = cKDTree(np.column_stack([z.real, z.imag])).query_pairs(WELD, output_type="ndarray")
-    links = coo_array((np.ones(len(pairs)), (pairs[:, 0], pairs[:, 1])), shape=(z.size, z.size))
-    _, group = connected_components(links, directed=False)
+    group = near_groups(np.column_stack([z.real, z.imag]), WELD)
     node = (np.bincount(group, z.real) + 1j * np.bincount(group, z.imag)) / np.bincount(group)
     around = sorted((abs(edge[0]), k) for k, edge in enumerate(edges) if _is_concentric(edge))
     circle, last = 0.0, -1.0

@@ -1,7 +1,5 @@
 """Cross-sections as drawings (.dxf), layers named by part: one slot or pole pitch, several, or the whole machine."""
 
-from __future__ import annotations
-
 import cmath
 import math
 import re
@@ -116,7 +114,11 @@ def read_section(path: Path, family_template: str, stack_mm: float | None = None
     Raises InputError for a damaged file, layers that name no part, and outlines that are open.
     """
     drawing = read_drawing(path, units)
-    stack_mm = stack_mm if stack_mm is not None else _stack(drawing.notes.get("stack_mm", ""), path)
+    try:
+        stack_mm = float(drawing.notes.get("stack_mm", "")) if stack_mm is None else stack_mm
+    except ValueError:
+        right = "--stack-mm 120 of model import; or a text stack_mm = 120 in the drawing"
+        raise InputError("a drawing does not say how long the stack is", str(path), right) from None
     draft = new_draft(None, path, "DXF")
     draft.take("machine", "the file's name", name=draft.name)
     draft.assume("machine", "any cross-section", family="cross-section")
@@ -151,14 +153,6 @@ def read_section(path: Path, family_template: str, stack_mm: float | None = None
     _frame(draft, section, family_template)
     _losses(draft, stator, copper, turn, family_template)
     return draft
-
-
-def _stack(text: str, path: Path) -> float:
-    try:
-        return float(text)
-    except ValueError:
-        right = "--stack-mm 120 of model import; or a text stack_mm = 120 in the drawing"
-        raise InputError("a drawing does not say how long the stack is", str(path), right) from None
 
 
 @dataclass(frozen=True)

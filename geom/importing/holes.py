@@ -1,7 +1,5 @@
 """Holes of pyleecan's classes by their own letters: magnets, and the air beside them, of one pole."""
 
-from __future__ import annotations
-
 import cmath
 import math
 from collections.abc import Callable

@@ -1,7 +1,5 @@
 """Motor-CAD files (.mot, sections of key=value): machines with magnets or a cage, the rotor inside the stator."""
 
-from __future__ import annotations
-
 import cmath
 import math
 import re
@@ -187,13 +185,15 @@ def _stator(draft: Draft, file: File) -> tuple[float, float, float]:
     draft.take("geometry.stator", "Slot_Number", slots=slots)
     words = "Slot_Type, Slot_Opening, Tooth_Width, Slot_Depth, Tooth_Tip_Depth, Tooth_Tip_Angle, Slot_Corner_Radius"
     room = sum(abs(loop_area(loop)) for loop in wire)
-    count, each, kind = file.number("ConductorsPerSlot", 1, 1e5), _section(file), "round"
-    if file.text("Armature_CoilStyle") == "1":
-        kind = "hairpin"
+    count, hairpin = file.number("ConductorsPerSlot", 1, 1e5), file.text("Armature_CoilStyle") == "1"
+    if hairpin:
+        each = file.length("Copper_Width") * file.length("Copper_Height")
         if (turn := _layers(draft, file, round(count))) is not None:
             return each * 1e6, slots * count * (file.length("Stator_Lam_Length") + 2 * turn), 1.0
         right = "an equivalent solid winding of the same copper: so many bars are no layers of this slot"
         draft.leave("Armature_CoilStyle", "hairpin", right)
+    else:
+        each = math.pi / 4 * file.length("Copper_Diameter") ** 2
     draft.draw("slots", words, slots, [slot.path])
     draft.draw("wires", f"{words}: under the tooth tips, the liner counted in", slots, wire)
     fill = count * each / room
@@ -201,6 +201,7 @@ def _stator(draft: Draft, file: File) -> tuple[float, float, float]:
         raise InputError(
             f"conductors take {100 * fill:.3g} % of a slot", file.where("ConductorsPerSlot"), "0.5 to 95 %"
         )
+    kind = "hairpin" if hairpin else "round"
     words = f"ConductorsPerSlot, {kind}: {count:g} of {each * 1e6:.4g} mm2 in {room * 1e6:.5g} mm2"
     draft.take("geometry.winding", words, fill=float(f"{fill:.9g}"))
     _, end = _resin_and_ends(draft, file)
@@ -255,13 +256,6 @@ def _layers(draft: Draft, file: File, count: int) -> float | None:
     draft.take("geometry.winding", "MagThrow", pitch_deg=round(math.degrees(min(span, math.pi)), 6))
     straight, end = _resin_and_ends(draft, file)
     return straight + math.hypot(end, span / 2 * METRES * (bore + depth + tip) / 2)
-
-
-def _section(file: File) -> float:
-    """Of one conductor (m2): round by its diameter, a hairpin by width and height."""
-    if file.text("Armature_CoilStyle") == "1":
-        return file.length("Copper_Width") * file.length("Copper_Height")
-    return math.pi / 4 * file.length("Copper_Diameter") ** 2
 
 
 def _v_layers(file: File, place: Place) -> list[tuple[Loop, Loop]]:

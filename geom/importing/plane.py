@@ -1,7 +1,5 @@
 """Shapes in the plane as complex numbers: x along the middle of a slot or pole, bulges where an edge is an arc."""
 
-from __future__ import annotations
-
 import cmath
 import math
 from collections.abc import Mapping, Sequence

@@ -1,7 +1,5 @@
 """Machines of pyleecan (JSON): laminations, slots, holes, magnets, cage, windings; a class is a name in a table."""
 
-from __future__ import annotations
-
 import json
 import math
 from collections.abc import Iterator, Mapping
@@ -421,7 +419,9 @@ def _rotor(draft: Draft, rotor: Lamination, stator: Lamination) -> None:
         elif node.get("__class__") == "LamSquirrelCage" or "ring_mat" in node:
             _cage(draft, rotor, slot, copies, kind)
         elif isinstance(node.get("winding"), Mapping):
-            _coils(draft, rotor, slot, copies, kind)
+            draft.draw("coils", f"rotor.slot, {kind}: what the field winding fills", copies, slot.filled)
+            _fill(draft, rotor, "rotor", "rotor", copies, sum(abs(loop_area(loop)) for loop in slot.filled))
+            draft.assume("geometry.rotor", "a tenth of the rotor's diameter", end_mm=in_mm(0.1 * 2 * rotor.outer))
     gap = stator.inner - top
     if not 0.2e-3 <= gap <= 20e-3:
         right = f"stator.Rint = {stator.inner:g} m at least 0.2 mm and at most 20 mm beyond it"
@@ -505,13 +505,6 @@ def _cage(draft: Draft, rotor: Lamination, slot: Slot | PathSlot, copies: int, k
     metal = str(_part(rotor.node, "ring_mat").get("name", "")).lower()
     like = assumptions.cage_metal(metal)
     _material(draft, "rotor.cage", _part(rotor.node, "ring_mat"), f"rotor.ring_mat, {metal}", like=like)
-
-
-def _coils(draft: Draft, rotor: Lamination, slot: Slot | PathSlot, copies: int, kind: str) -> None:
-    draft.draw("coils", f"rotor.slot, {kind}: what the field winding fills", copies, slot.filled)
-    room = sum(abs(loop_area(loop)) for loop in slot.filled)
-    _fill(draft, rotor, "rotor", "rotor", copies, room)
-    draft.assume("geometry.rotor", "a tenth of the rotor's diameter", end_mm=in_mm(0.1 * 2 * rotor.outer))
 
 
 def _shaft(draft: Draft, document: Node, pair: list[Lamination]) -> None:

@@ -1,7 +1,5 @@
 """Slots of pyleecan's classes by their own letters: steps down from the surface, or corners where edges are arcs."""
 
-from __future__ import annotations
-
 import cmath
 import math
 from collections.abc import Callable

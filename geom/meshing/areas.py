@@ -1,7 +1,5 @@
 """Volumes, masses, film and contact areas of every part, from the prismatic description alone: no solids, no mesh."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 
@@ -10,8 +8,7 @@ import numpy as np
 from geom.arrays import Array, Ints
 from geom.description.machine import Machine
 from geom.description.part import Part
-from geom.meshing.partition import AMBIENT, Partition, partition
-from geom.meshing.voids import filled
+from geom.meshing.partition import AMBIENT, Partition, filled, partition
 
 
 @dataclass(frozen=True)

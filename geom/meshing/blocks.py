@@ -5,8 +5,6 @@ a level where only the rotor changes does not cut the housing. A column is a sta
 of the plane: the flange over the slots is not cut by the slots.
 """
 
-from __future__ import annotations
-
 from collections import defaultdict
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -49,7 +47,14 @@ def find_blocks(cut: Partition) -> list[Block]:
     blocks: list[Block] = []
     growing: list[Block] = []
     for slab in range(cut.labels.shape[1]):
-        groups = _groups(cut, slab)
+        # Sets of solid faces of one slab that are connected through common edges.
+        solid = np.append(cut.solid[:, slab], False)
+        inside = solid[cut.left] & solid[cut.right]
+        component = joined_groups(len(solid), np.column_stack([cut.left[inside], cut.right[inside]]))
+        members = defaultdict(list)
+        for face in np.flatnonzero(solid):
+            members[component[face]].append(face)
+        groups = [np.array(faces) for faces in members.values()]
         extensions = [_continued(cut, growing, faces, slab) for faces in groups]
         open_ids = {id(block) for block, _ in extensions if block}
         blocks += [block for block in growing if id(block) not in open_ids]
@@ -57,31 +62,16 @@ def find_blocks(cut: Partition) -> list[Block]:
     return sorted(blocks + growing, key=lambda block: (block.first, block.faces[0]))
 
 
-def _groups(cut: Partition, slab: int) -> list[Ints]:
-    """Sets of solid faces of one slab that are connected through common edges."""
-    solid = np.append(cut.solid[:, slab], False)
-    inside = solid[cut.left] & solid[cut.right]
-    component = joined_groups(len(solid), np.column_stack([cut.left[inside], cut.right[inside]]))
-    members = defaultdict(list)
-    for face in np.flatnonzero(solid):
-        members[component[face]].append(face)
-    return [np.array(faces) for faces in members.values()]
-
-
 def _continued(cut: Partition, growing: Sequence[Block], faces: Ints, slab: int) -> tuple[Block | None, Block]:
     """The block of the previous slab that goes on unchanged, if any, and the block up to this slab."""
     for block in growing:
-        if np.array_equal(block.faces, faces) and _unchanged(cut, faces, slab):
-            return block, Block(faces, block.first, slab)
+        if np.array_equal(block.faces, faces):  # unchanged, if its neighbours are, too
+            mine = np.isin(cut.left, faces) | np.isin(cut.right, faces)
+            around = np.unique(np.concatenate([faces, cut.left[mine], cut.right[mine]]))
+            around = around[around >= 0]
+            if np.array_equal(cut.labels[around, slab], cut.labels[around, slab - 1]):
+                return block, Block(faces, block.first, slab)
     return None, Block(faces, slab, slab)
-
-
-def _unchanged(cut: Partition, faces: Ints, slab: int) -> bool:
-    """Neither the faces nor their neighbours change between the previous slab and this one."""
-    mine = np.isin(cut.left, faces) | np.isin(cut.right, faces)
-    around = np.unique(np.concatenate([faces, cut.left[mine], cut.right[mine]]))
-    around = around[around >= 0]
-    return np.array_equal(cut.labels[around, slab], cut.labels[around, slab - 1])
 
 
 def find_columns(cut: Partition, blocks: Sequence[Block]) -> list[Column]:

@@ -1,7 +1,5 @@
 """Constrained Delaunay triangulation of one face with given boundary points."""
 
-from __future__ import annotations
-
 import numpy as np
 import shapely
 from scipy.spatial import Delaunay

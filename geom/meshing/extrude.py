@@ -1,7 +1,5 @@
 """From triangles to tetrahedra: extrusion of every block, and the names of all faces."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Mapping, Sequence
 from itertools import pairwise
 
@@ -13,8 +11,7 @@ from geom.description.part import Part
 from geom.limits import MESH_POINTS
 from geom.meshing.blocks import Block, Column
 from geom.meshing.mesh import Contact, NamedMesh, Patch
-from geom.meshing.noding import GRID
-from geom.meshing.partition import AMBIENT, Partition
+from geom.meshing.partition import AMBIENT, GRID, Partition
 from geom.meshing.triangulate import Triangulation
 
 FaceName = Callable[[str, str], str]
@@ -140,15 +137,11 @@ def _assembled(
     names = tuple(part.name for part in parts if part.solid)
     facets = np.searchsorted(nodes, np.concatenate([triangles for triangles, _ in walls]))
     sides = np.concatenate([labels for _, labels in walls])
-    tets = _positive(points, corners.reshape(-1, 4))
-    return NamedMesh(points, tets, (np.cumsum(solid) - 1)[label], names, *_named(facets, sides, parts, face_name))
-
-
-def _positive(points: Array, tets: Ints) -> Ints:
+    tets = corners.reshape(-1, 4)
     a, b, c, d = (points[tets[:, i]] for i in range(4))
     negative = np.einsum("ij,ij->i", np.cross(b - a, c - a), d - a) < 0
     tets[negative] = tets[negative][:, [1, 0, 2, 3]]
-    return tets
+    return NamedMesh(points, tets, (np.cumsum(solid) - 1)[label], names, *_named(facets, sides, parts, face_name))
 
 
 def _named(

@@ -1,7 +1,5 @@
 """The named tetrahedral mesh: what `geom` hands to `fem`, and nothing else."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from itertools import combinations

@@ -1,10 +1,8 @@
 """A machine's named mesh: partition the plane once, triangulate once, extrude."""
 
-from __future__ import annotations
-
 import hashlib
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import lru_cache
 from pathlib import Path
 from typing import Any
@@ -16,9 +14,8 @@ from geom.meshing.blocks import Block, Column, find_blocks, find_columns
 from geom.meshing.extrude import extrude
 from geom.meshing.mesh import NamedMesh
 from geom.meshing.meshio_io import read_npz, write_npz
-from geom.meshing.partition import Partition, partition
+from geom.meshing.partition import Partition, filled, partition
 from geom.meshing.triangulate import Triangulation, triangulate
-from geom.meshing.voids import filled
 
 COARSE: dict[str, Any] = {"size_m": 0.06, "segments": 44, "across": 1}  # for a first look and for tests
 # A fifth of it: finer moves no temperature that is read.
@@ -48,34 +45,30 @@ def build_mesh(
     Raises InputError where solids overlap or a closed void is not declared as a fluid.
     """
     axial = 1.5 * size_m if axial_m is None else axial_m
-    file = _cache_file(machine, (size_m, segments, across, axial, *sorted(ends), "/", *sorted(finer)), cache)
+    file = None
+    if cache is not None:  # named by what a mesh depends on: shapes and names, not materials
+        settings = (size_m, segments, across, axial, *sorted(ends), "/", *sorted(finer))
+        shapes = [(part.name, part.prisms, part.solid) for part in (*machine.parts, *machine.fluids)]
+        content = repr((shapes, sorted(machine.face_names.items()), settings)).encode()
+        file = Path(cache) / f"mesh-{hashlib.sha256(content).hexdigest()[:20]}.npz"
     identities = {part.name: identity for part in machine.parts if (identity := part.identity) is not None}
     if file is not None and (cached := recalled(file, read_npz)) is not None:
         return replace(cached, identities=identities)
-    plan = _planned((*machine.parts, *machine.fluids), segments)
+    cut, blocks, columns = _planned((*machine.parts, *machine.fluids), segments)
     flat = _triangulated((*machine.parts, *machine.fluids), segments, size_m, across, tuple(sorted(finer)))
-    mesh = extrude(plan.cut, plan.blocks, plan.columns, flat, axial, machine.face_name, ends)
+    mesh = extrude(cut, blocks, columns, flat, axial, machine.face_name, ends)
     if file is not None:
         with stored(file) as partial:
             write_npz(mesh, partial)
     return replace(mesh, identities=identities)
 
 
-@dataclass(frozen=True)
-class _Plan:
-    """What a mesh of any size starts from."""
-
-    cut: Partition
-    blocks: list[Block]
-    columns: list[Column]
-
-
 @lru_cache(maxsize=4)
-def _planned(parts: tuple[Part, ...], segments: int) -> _Plan:
-    """The plane partition and its columns; kept, so that refining does not partition again."""
+def _planned(parts: tuple[Part, ...], segments: int) -> tuple[Partition, list[Block], list[Column]]:
+    """What a mesh of any size starts from, the plane partition and its columns; refining does not partition again."""
     cut = filled(partition(parts, segments))
     blocks = find_blocks(cut)
-    return _Plan(cut, blocks, find_columns(cut, blocks))
+    return cut, blocks, find_columns(cut, blocks)
 
 
 @lru_cache(maxsize=8)
@@ -83,15 +76,6 @@ def _triangulated(
     parts: tuple[Part, ...], segments: int, size_m: float, across: float, finer: tuple[str, ...]
 ) -> Triangulation:
     """Triangles of the plane; kept, so that other layers do not cut it again."""
-    plan = _planned(parts, segments)
-    times = {label: finer.count(part.name) for label, part in enumerate(plan.cut.parts)}
-    return triangulate(plan.columns, size_m, across, times)
-
-
-def _cache_file(machine: Machine, settings: tuple[float | str, ...], cache: Path | str | None) -> Path | None:
-    """Named by what a mesh depends on: shapes and names, not materials."""
-    if cache is None:
-        return None
-    shapes = [(part.name, part.prisms, part.solid) for part in (*machine.parts, *machine.fluids)]
-    content = repr((shapes, sorted(machine.face_names.items()), settings)).encode()
-    return Path(cache) / f"mesh-{hashlib.sha256(content).hexdigest()[:20]}.npz"
+    cut, _, columns = _planned(parts, segments)
+    times = {label: finer.count(part.name) for label, part in enumerate(cut.parts)}
+    return triangulate(columns, size_m, across, times)

@@ -1,7 +1,5 @@
 """Meshes on disk: .npz for ourselves, .vtu with a JSON sidecar of names for others."""
 
-from __future__ import annotations
-
 import json
 from pathlib import Path
 from typing import Any

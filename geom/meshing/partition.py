@@ -1,9 +1,7 @@
-"""The plane partition: all profiles of a machine overlaid, every face labelled at every axial slab."""
-
-from __future__ import annotations
+"""The plane partition: all profiles of a machine overlaid, every face labelled at every axial slab, voids filled."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 import shapely
@@ -13,10 +11,53 @@ from geom.arrays import Array, Ints, Mask
 from geom.description.part import Part
 from geom.description.profile import ArcGrid, Profile
 from geom.errors import InputError
-from geom.meshing.noding import GRID, noded
+from geom.groups import joined_groups, near_groups
 
 _OVERLAP = 1e-8  # m2; a common area below this is rounding
 AMBIENT = -1
+GRID = 1e-7  # m; coordinates are snapped to this
+NEAR = 2e-6  # m; points and lines nearer than this are one, far below any tolerance of a motor
+
+
+def noded(lines: list[shapely.Geometry]) -> NDArray[np.object_]:
+    """Border lines of many polygons as segments that meet only at their ends, cleaned of rounding.
+
+    Corners that should lie on another line miss it by a rounding error when the shape is turned. Snap rounding then
+    leaves edges and slivers of 0.1 um, which no mesh survives; they are merged here.
+    """
+    xy, line = shapely.get_coordinates(shapely.get_parts(shapely.union_all(lines, grid_size=GRID)), return_index=True)
+    keys, number = np.unique(np.round(xy / GRID).astype(np.int64), axis=0, return_inverse=True)
+    follows = line[1:] == line[:-1]
+    points, edges = keys * GRID, np.column_stack([number[:-1][follows], number[1:][follows]])
+    # For each point the number of the point that stands for all those near it.
+    group = near_groups(points, NEAR)
+    edges = _distinct(np.unique(group, return_index=True)[1][group][edges])
+    edges = _distinct(_split(points, edges))
+    return shapely.linestrings(points[edges])
+
+
+def _distinct(edges: Ints) -> Ints:
+    edges = np.unique(np.sort(edges, axis=1), axis=0)
+    return edges[edges[:, 0] != edges[:, 1]]
+
+
+def _split(points: Array, edges: Ints) -> Ints:
+    """Edges cut at every point that lies on them to within NEAR."""
+    vertices = np.unique(edges)
+    tree = shapely.STRtree(shapely.linestrings(points[edges]))
+    which, edge = tree.query(shapely.points(points[vertices]), predicate="dwithin", distance=NEAR)
+    point = vertices[which]
+    inner = (edges[edge] != point[:, None]).all(axis=1)
+    point, edge = point[inner], edge[inner]
+    start, along = points[edges[:, 0]], points[edges[:, 1]] - points[edges[:, 0]]
+    share = np.einsum("ij,ij->i", points[point] - start[edge], along[edge])
+    order = np.lexsort((share, edge))
+    point, edge = point[order], edge[order]
+    pieces = [edges[np.setdiff1d(np.arange(len(edges)), edge)]]
+    for index in np.unique(edge):
+        chain = np.concatenate([edges[index, :1], point[edge == index], edges[index, 1:]])
+        pieces.append(np.column_stack([chain[:-1], chain[1:]]))
+    return np.vstack(pieces)
 
 
 @dataclass(frozen=True)
@@ -58,17 +99,12 @@ def partition(parts: Sequence[Part], segments: int = 72) -> Partition:
     grid = ArcGrid(profiles, segments)
     exact = np.array([profile.to_polygon(grid) for profile in profiles], dtype=object)
     polygons = shapely.set_precision(exact, GRID, mode="pointwise")  # equal corners become equal to the bit
-    faces = _tile(polygons)
+    box = shapely.box(*shapely.total_bounds(polygons)).buffer(0.02, join_style="mitre")
+    lines = noded([*shapely.boundary(polygons), box.exterior])
+    faces = shapely.orient_polygons(np.array(shapely.get_parts(shapely.polygonize(lines)), dtype=object))
     levels = np.unique(np.round([z for part in parts for _, z0, z1 in part.prisms for z in (z0, z1)], 7))
     labels = _label(parts, profiles, polygons, faces, levels)
     return Partition(levels, faces, labels, *_neighbours(faces), tuple(parts))
-
-
-def _tile(polygons: NDArray[np.object_]) -> NDArray[np.object_]:
-    box = shapely.box(*shapely.total_bounds(polygons)).buffer(0.02, join_style="mitre")
-    lines = noded([*shapely.boundary(polygons), box.exterior])
-    faces = np.array(shapely.get_parts(shapely.polygonize(lines)), dtype=object)
-    return shapely.orient_polygons(faces)
 
 
 def _label(
@@ -81,24 +117,19 @@ def _label(
     inside = shapely.STRtree(shapely.point_on_surface(faces))
     which, members = inside.query(polygons, predicate="contains")
     faces_of = {profile: members[which == i] for i, profile in enumerate(profiles)}
-    labels = np.full((len(faces), len(levels) - 1), AMBIENT, dtype=np.int64)
+    labels, areas = np.full((len(faces), len(levels) - 1), AMBIENT, dtype=np.int64), shapely.area(faces)
     order = sorted(range(len(parts)), key=lambda i: (not parts[i].solid, i))
     for index in order:
         for profile, z0, z1 in parts[index].prisms:
             slabs = slice(*np.searchsorted(levels, np.round([z0, z1], 7)))
             block = labels[faces_of[profile], slabs]
             if parts[index].solid:
-                _refuse_overlap(parts, index, block, faces[faces_of[profile]])
+                solid = block != AMBIENT
+                if solid.any() and areas[faces_of[profile]][solid.any(axis=1)].sum() >= _OVERLAP:
+                    what = f"{parts[index].name} and {parts[block[solid][0]].name} overlap"
+                    raise InputError(what, "geometry", "parts may touch, not overlap")
             labels[faces_of[profile], slabs] = np.where(block == AMBIENT, index, block)
     return labels
-
-
-def _refuse_overlap(parts: Sequence[Part], index: int, block: Ints, faces: NDArray[np.object_]) -> None:
-    solid = block != AMBIENT
-    if not solid.any() or shapely.area(faces)[solid.any(axis=1)].sum() < _OVERLAP:
-        return
-    other = parts[block[solid][0]].name
-    raise InputError(f"{parts[index].name} and {other} overlap", "geometry", "parts may touch, not overlap")
 
 
 def half_edges(faces: NDArray[np.object_]) -> tuple[Array, Ints]:
@@ -119,3 +150,38 @@ def _neighbours(faces: NDArray[np.object_]) -> tuple[Ints, Ints, Array]:
     left[which[forward]] = face[forward]
     right[which[~forward]] = face[~forward]
     return left, right, np.linalg.norm(points[edges[:, 1]] - points[edges[:, 0]], axis=1)
+
+
+def filled(cut: Partition) -> Partition:
+    """The partition with closed voids given to the fluid that has no prisms of its own, if there is one.
+
+    Raises InputError for a closed void that no fluid fills.
+    """
+    hidden = _hidden(cut)
+    if not hidden.any():
+        return cut
+    takers = [i for i, part in enumerate(cut.parts) if not part.solid and not part.prisms]
+    if not takers:
+        face, slab = np.argwhere(hidden)[0]
+        point, z = shapely.point_on_surface(cut.faces[face]), cut.levels[slab : slab + 2].mean()
+        what = f"closed void around x, y, z = {point.x * 1e3:.1f}, {point.y * 1e3:.1f}, {z * 1e3:.1f} mm"
+        raise InputError(what, "geometry", "declare the fluid that fills it, or close it")
+    return replace(cut, labels=np.where(hidden, takers[0], cut.labels))
+
+
+def _hidden(cut: Partition) -> Mask:
+    """(n_face, n_slab) True in voids without a label and without a way out."""
+    void = cut.labels == AMBIENT
+    n_face, n_slab = void.shape
+    cell = np.arange(n_face * n_slab).reshape(n_face, n_slab)
+    outside = n_face * n_slab
+    inner = (cut.left >= 0) & (cut.right >= 0)
+    a, b = cut.left[inner], cut.right[inner]
+    beside = void[a] & void[b]
+    above = void[:, :-1] & void[:, 1:]
+    rim = np.concatenate([cut.left[cut.right < 0], cut.right[cut.left < 0]])
+    open_cells = np.concatenate([cell[rim].ravel(), cell[:, 0][void[:, 0]], cell[:, -1][void[:, -1]]])
+    first = np.concatenate([cell[a][beside], cell[:, :-1][above], open_cells])
+    second = np.concatenate([cell[b][beside], cell[:, 1:][above], np.full(len(open_cells), outside)])
+    component = joined_groups(outside + 1, np.column_stack([first, second]))
+    return void & (component[:-1].reshape(n_face, n_slab) != component[-1])

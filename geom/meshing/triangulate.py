@@ -3,8 +3,6 @@
 Netgen was measured first: it refines isotropically into 0.3 mm liners and needs ten times the points.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
@@ -17,8 +15,7 @@ from geom.arrays import Array, Ints
 from geom.limits import MESH_POINTS
 from geom.meshing.blocks import Column
 from geom.meshing.delaunay import interior_points, nudged, triangulate_face
-from geom.meshing.noding import GRID
-from geom.meshing.partition import half_edges
+from geom.meshing.partition import GRID, half_edges
 
 _SLENDER = 15.0  # perimeter^2 / (4 area) beyond which a face is a layer: one element across is enough
 

@@ -1,7 +1,5 @@
 """Arrangement of profiles in the plane: their edges cut where they meet, and which profiles lie on either side."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass

@@ -1,7 +1,5 @@
 """Boundaries of exact solids, put together vertex by vertex (OpenCASCADE), so that nothing has to be intersected."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterable, Sequence
 from typing import TYPE_CHECKING, Any
@@ -66,7 +64,7 @@ class Boundary:
         shell.Closed(True)
         return shell
 
-    def solid(self, shells: Iterable[Any]) -> cq.Solid:
+    def solid(self, shells: Iterable[Any]) -> "cq.Solid":
         """What lies inside the first shell; further ones bound its voids."""
         import cadquery as cq
 

@@ -11,9 +11,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from geom.description.machine import Machine, step_sidecar
-from geom.description.materials import entry_of
+from geom.description.materials import colour, entry_of
 from geom.description.names import file_stem
-from geom.description.palette import colour
 from geom.description.part import CadShape, Helix, Part, Prism, Rod
 from geom.description.roles import Identity
 from geom.disk_cache import cache_file, recalled, stored
@@ -120,20 +119,16 @@ def _steps(machine: Machine, whole: cq.Assembly, folder: Path, cache: Path | str
         files["step:prisms"] = (folder / f"{machine.name}-prisms.step", assembly(plain, cache))
     for path, what in files.values():
         what.export(str(path))
-        step_sidecar(path).write_text(_materials(machine), encoding="utf-8")
+        # What a STEP file cannot say, as TOML.
+        import tomlkit
+
+        roles = {part.name: _role(part.identity) for part in machine.parts if part.identity is not None}
+        document = {
+            "machine": {"name": machine.name, "description": machine.description},
+            "materials": {part.name: entry_of(part.material, part.properties) for part in machine.parts},
+        }
+        step_sidecar(path).write_text(tomlkit.dumps(document | ({"roles": roles} if roles else {})), encoding="utf-8")
     return {key: path for key, (path, _) in files.items()}
-
-
-def _materials(machine: Machine) -> str:
-    """What a STEP file cannot say, as TOML."""
-    import tomlkit
-
-    roles = {part.name: _role(part.identity) for part in machine.parts if part.identity is not None}
-    document = {
-        "machine": {"name": machine.name, "description": machine.description},
-        "materials": {part.name: entry_of(part.material, part.properties) for part in machine.parts},
-    }
-    return tomlkit.dumps(document | ({"roles": roles} if roles else {}))
 
 
 def _role(identity: Identity) -> dict[str, str | bool]:

@@ -4,8 +4,6 @@ A helix has no finite spline. A polynomial of degree `_DEGREE` over a quarter tu
 radius (Chebyshev's bound), far below the 1e-7 mm that CAD files resolve.
 """
 
-from __future__ import annotations
-
 import math
 from functools import cache
 from itertools import pairwise
@@ -31,7 +29,7 @@ _DEGREE = 11  # of the polynomials of a face: interpolated, a cosine over a quar
 _SPAN = math.pi / 2  # rad; of one face, at most
 
 
-def channel(helix: Helix) -> cq.Solid:
+def channel(helix: Helix) -> "cq.Solid":
     """The channel (mm): a rectangle in a plane through the axis, moved as on a screw, cut by radii and end planes."""
     make = Boundary()
     cuts = [_Cut(helix, angle, make) for angle in _angles(helix)]

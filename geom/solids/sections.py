@@ -1,7 +1,5 @@
 """Sections of stacked prisms: between two neighbouring levels every prism is there or not."""
 
-from __future__ import annotations
-
 import math
 from collections import defaultdict
 from collections.abc import Iterable, Sequence

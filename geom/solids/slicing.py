@@ -52,12 +52,9 @@ def _levels(solid: cq.Solid, name: str) -> list[float]:
             levels.append(face.Center().z)
         elif cosines.max() > _TILT:
             box = face.BoundingBox()
-            raise InputError(
-                f"a {face.geomType().lower()} face from z = {box.zmin:.4g} to {box.zmax:.4g} mm is not prismatic along"
-                " the axis",
-                name,
-                "faces must lie along z or normal to it: simplify the solid or leave it out",
-            )
+            what = f"a {face.geomType().lower()} face from z = {box.zmin:.4g} to {box.zmax:.4g} mm"
+            right = "faces must lie along z or normal to it: simplify the solid or leave it out"
+            raise InputError(f"{what} is not prismatic along the axis", name, right)
     levels.sort()
     return [z for i, z in enumerate(levels) if i == 0 or z - levels[i - 1] > _LEVEL]
 
@@ -128,25 +125,16 @@ def _chained(pieces: list[Piece]) -> list[Loop] | None:
         start, end, bulge = left.pop()
         first, loop = start, [_vertex(start, bulge)]
         while np.hypot(*(end - first)) > _JOIN:
-            following = _next(left, end)
-            if following is None:
+            ends = np.array([[piece[0], piece[1]] for piece in left]).reshape(-1, 2) - end
+            distance = np.hypot(*ends.T)
+            if not left or distance.min() > _JOIN:
                 return None
-            index, backwards = following
+            index, backwards = divmod(int(distance.argmin()), 2)  # of the edge that goes on, or runs the other way
             start, other, bulge = left.pop(index)
             here, end = (other, start) if backwards else (start, other)
             loop.append(_vertex(here, -bulge if backwards else bulge))
         loops.append(tuple(loop))
     return loops
-
-
-def _next(pieces: list[Piece], end: np.ndarray) -> tuple[int, bool] | None:
-    """Which edge goes on from here, and whether it runs the other way."""
-    ends = np.array([[piece[0], piece[1]] for piece in pieces]).reshape(-1, 2) - end
-    distance = np.hypot(*ends.T)
-    if not len(pieces) or distance.min() > _JOIN:
-        return None
-    index, backwards = divmod(int(distance.argmin()), 2)
-    return index, bool(backwards)
 
 
 def _vertex(point: np.ndarray, bulge: float) -> Vertex:

@@ -4,8 +4,6 @@ The boundary of a section is drawn up into walls; where the sections below and a
 a ceiling. Straight edges become planes, arcs cylinders. Nothing is intersected in space, and nothing is approximated.
 """
 
-from __future__ import annotations
-
 import math
 from collections import defaultdict
 from collections.abc import Sequence
@@ -36,7 +34,7 @@ class _Face:
     volume: float = 0.0
 
 
-def stacked(prisms: Sequence[Prism]) -> list[cq.Solid]:
+def stacked(prisms: Sequence[Prism]) -> "list[cq.Solid]":
     """Exact solids (mm) of prisms (m) that may touch but not overlap, touching ones made one."""
     stack = _Stack(prisms)
     shells = _shells(stack.walls() + stack.floors())
@@ -63,7 +61,7 @@ def _shells(faces: list[_Face]) -> list[tuple[list[Any], float]]:
     return list(zip(members, volume.tolist()))
 
 
-def _holder(outer: list[cq.Solid], void: Any) -> int:
+def _holder(outer: "list[cq.Solid]", void: Any) -> int:
     """Which solid a void is in."""
     import cadquery as cq
 

@@ -20,8 +20,6 @@ and the sections that machine files have besides (ratings, contacts, films, loss
 Closed voids between the solids become the fluid "air.inside".
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterable, Mapping
 from fnmatch import fnmatchcase
 from pathlib import Path
@@ -55,7 +53,9 @@ def machine_in_step(path: Path, usual_materials: Callable[[], Mapping[str, str]]
     sidecar = _read_sidecar(beside)
     prisms = step_prisms(path, sidecar.get("import", {}))
     fluids = sidecar.get("fluids", {})
-    _refuse_unused({**sidecar.get("materials", {}), **fluids, **sidecar.get("roles", {})}, prisms, str(beside))
+    for pattern in {**sidecar.get("materials", {}), **fluids, **sidecar.get("roles", {})}:
+        if not any(fnmatchcase(name, pattern) for name in prisms):
+            raise no_solid(pattern, prisms, str(beside))
     what = _declared_roles(sidecar.get("roles", {}), prisms, f"{beside} [roles]")
     materials = sidecar.get("materials", {})
     parts = tuple(
@@ -122,12 +122,6 @@ def _read_sidecar(path: Path) -> dict[str, Any]:
                 raise InputError(f"unknown key {key!r}", f"{path} [{section}]", f"known: {', '.join(_KEYS[section])}")
     check_ratings(sidecar, str(path))
     return sidecar
-
-
-def _refuse_unused(patterns: Mapping[str, Any], prisms: Mapping[str, Any], where: str) -> None:
-    for pattern in patterns:
-        if not any(fnmatchcase(name, pattern) for name in prisms):
-            raise no_solid(pattern, prisms, where)
 
 
 def _material(

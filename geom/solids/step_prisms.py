@@ -3,8 +3,6 @@
 python -m geom.solids.step_prisms    {"path", "import"} as JSON on stdin; the prisms, or the fault, as its last line
 """
 
-from __future__ import annotations
-
 import json
 import os
 import subprocess
@@ -16,6 +14,7 @@ from typing import TYPE_CHECKING, Any
 
 from geom.description.machine import step_sidecar
 from geom.description.names import plain_name
+from geom.description.parameters import is_number
 from geom.description.part import Prism
 from geom.description.profile import Profile
 from geom.errors import InputError
@@ -68,7 +67,7 @@ def _prism(loops: list[list[list[float]]], z0: float, z1: float) -> Prism:
     return Profile(outer, tuple(holes)), z0, z1
 
 
-def _solids(path: Path, options: Mapping[str, Any]) -> dict[str, list[cq.Solid]]:
+def _solids(path: Path, options: Mapping[str, Any]) -> "dict[str, list[cq.Solid]]":
     """Solids (mm) by name, turned and moved so that the machine's axis is z."""
     import cadquery as cq
 
@@ -76,7 +75,8 @@ def _solids(path: Path, options: Mapping[str, Any]) -> dict[str, list[cq.Solid]]
     where = f"{step_sidecar(path)} [import]"
     if not isinstance(axis, str) or axis not in _ROTATIONS:
         raise InputError(f"{axis!r} is not an axis", f"{where} axis", f"one of {', '.join(_ROTATIONS)}")
-    if not (isinstance(origin, list) and len(origin) == 3 and all(_is_length(x) for x in origin)):
+    within = isinstance(origin, list) and all(is_number(x) and abs(x) <= LARGEST_MM for x in origin)
+    if not within or len(origin) != 3:
         raise InputError(
             f"{origin!r} is not a point", f"{where} origin_mm", f"[x, y, z], each within {LARGEST_MM:g} mm"
         )
@@ -92,10 +92,6 @@ def _solids(path: Path, options: Mapping[str, Any]) -> dict[str, list[cq.Solid]]
     return by_name
 
 
-def _is_length(x: object) -> bool:
-    return isinstance(x, int | float) and not isinstance(x, bool) and abs(x) <= LARGEST_MM
-
-
 def _assembly(path: Path) -> Any:
     import cadquery as cq
 
@@ -106,8 +102,8 @@ def _assembly(path: Path) -> Any:
 
 
 def _without_excluded(
-    solids: dict[str, list[cq.Solid]], options: Mapping[str, Any], path: Path
-) -> dict[str, list[cq.Solid]]:
+    solids: "dict[str, list[cq.Solid]]", options: Mapping[str, Any], path: Path
+) -> "dict[str, list[cq.Solid]]":
     patterns, where = options.get("leave_out", []), f"{step_sidecar(path)} [import] leave_out"
     if not (isinstance(patterns, list) and all(isinstance(p, str) for p in patterns)):
         raise InputError(f"{patterns!r} is not a list of names", where, 'such as ["bolt*"]')
@@ -120,7 +116,7 @@ def _without_excluded(
     return rest
 
 
-def _all_sliced(solids: Mapping[str, list[cq.Solid]], path: Path) -> dict[str, tuple[Prism, ...]]:
+def _all_sliced(solids: "Mapping[str, list[cq.Solid]]", path: Path) -> dict[str, tuple[Prism, ...]]:
     """Prisms by name; one error that names every solid that cannot be sliced."""
     prisms, faults = {}, []
     for name, pieces in solids.items():

@@ -1,7 +1,5 @@
 """The check of a machine's solids: are their surfaces closed (trimesh), and is their volume that of the formula?"""
 
-from __future__ import annotations
-
 import json
 from collections import Counter
 from dataclasses import dataclass
@@ -65,7 +63,7 @@ def _checked(part: Part, tolerance_mm: float, cache: Path | str | None) -> CadCh
     return check
 
 
-def surface(solid: cq.Solid, tolerance_mm: float) -> trimesh.Trimesh:
+def surface(solid: "cq.Solid", tolerance_mm: float) -> "trimesh.Trimesh":
     """Triangulated surface (mm) with equal points merged.
 
     tolerance_mm : how far triangles may lie from the solid; they also turn by at most `ANGLE` from one to the next
@@ -84,7 +82,7 @@ def surface(solid: cq.Solid, tolerance_mm: float) -> trimesh.Trimesh:
     return trimesh.Trimesh(corners, np.arange(len(corners)).reshape(-1, 3), process=True)
 
 
-def _triangles(solid: cq.Solid) -> Array:
+def _triangles(solid: "cq.Solid") -> Array:
     """(3 n, 3) corners (mm), by a binary STL file: asked for one by one they take longer than to be made."""
     from OCP.StlAPI import StlAPI_Writer
 

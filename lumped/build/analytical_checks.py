@@ -5,8 +5,6 @@ the legs of a plain hollow cylinder (Mellor, Roberts, Turner 1991) or half a thi
 of that is its difference of means over the heat that passes: equal to the legs where neither part is heated itself.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from typing import Any

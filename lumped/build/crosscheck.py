@@ -1,20 +1,20 @@
 """The network against the field it came from, on the same mesh, with the same coefficients: where do they differ?"""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
 
 from fem.matrices.assembly import FieldModel
+from fem.matrices.material import CopperLoss, Radiation, Term
+from fem.solvers.newton import NonlinearSolution, solve_nonlinear
 from fem.solvers.solve import Fluids, Solver, Steady, steady
 from geom.arrays import Numbers
 from lumped.integration.steady import steady as steady_rest
 from lumped.model.multipliers import multipliers
-from lumped.model.network import Array, Network, Source
-from lumped.transfer.laws import Law
-from lumped.transfer.terms_value import coefficient
+from lumped.model.network import Array, Link, Network, Source
+from lumped.transfer import laws
+from lumped.transfer.terms_value import coefficient, temperature_value
 
 Shares = Mapping[str, Numbers]
 FLOOR = 0.1  # of the machine's largest rise: below it a percentage of a part's own rise means nothing
@@ -66,7 +66,7 @@ class CrossCheck:
     state: Array
     field: Array
     links: tuple[LinkCheck, ...]
-    at: Coefficients
+    at: "Coefficients"
     heat: float
 
     @property
@@ -111,7 +111,7 @@ def coefficients(network: Network, inputs: Numbers, z: Array, shares: Shares | N
     n, ambient = len(network.states), z[len(network.states) :]
     D, s = np.zeros((len(fluids), len(fluids))), np.zeros(len(fluids))
 
-    def value(law: Law, name: str, hot: float, cold: float) -> float:
+    def value(law: laws.Law, name: str, hot: float, cold: float) -> float:
         return m.get(name, 1.0) * coefficient(law, signals, hot, cold)
 
     for link in network.links:
@@ -220,3 +220,48 @@ def compared(field: FieldModel, network: Network, full: Steady, x: Array, ambien
         heated = part in network.heated
         out.append(PartCheck(part, mean, network_mean, hot, peak, 100.0 * mean_off, 100.0 * hot_off, heated))
     return tuple(out)
+
+
+def with_local_laws(
+    field: FieldModel,
+    network: Network,
+    inputs: Mapping[str, float],
+    check: CrossCheck,
+    shares: Shares,
+    loads: Mapping[str, Array] | None = None,
+    solver: Solver | None = None,
+    ambient: float = 20.0,
+) -> NonlinearSolution:
+    """The field with radiation facet by facet and copper loss element by element; arguments as for `crosscheck`.
+
+    A network's laws see means: radiation that of a face, copper loss that of a winding. This is the field without that
+    simplification, at the same operating point, by Newton's method; the rest stays as the network settles.
+    """
+    signals = {name: np.array([float(value)]) for name, value in inputs.items()}
+    films, watts = dict(check.at.films), dict(check.at.watts)
+    terms: list[Term] = []
+    for link in radiating(network):
+        emissivity, face = float(np.mean(link.law.factor(signals))), link.places[0]
+        hot, cold = link.hot.at(check.state), link.cold.at(check.state)
+        films[face] = max(films[face] - emissivity * temperature_value(link.law.temperature, hot, cold), 0.0)
+        terms.append(Radiation(face, emissivity, cold))
+    for source, law in copper(network):
+        rated = float(np.mean(source.law.factor(signals)))
+        now = rated * temperature_value(law, source.probe.at(check.state), 0.0)
+        for part, share in shares[source.name].items():
+            if part in field.blocks:
+                watts[part] -= now * share
+                terms.append(CopperLoss(part, rated * share, law.alpha, law.reference))
+    zones = {part: field.load(part) for part in field.blocks} | dict(loads or {})
+    load = sum((q * zones[place] for place, q in watts.items() if place in zones), np.zeros(field.n))
+    fluids = Fluids(fluid_nodes(network), check.at.streams, check.at.inflow, dict.fromkeys(network.boundaries, ambient))
+    return solve_nonlinear(solver or Solver(field), films, check.at.contacts, load, fluids, terms, check.field)
+
+
+def radiating(network: Network) -> list[Link]:
+    return [x for x in network.links if x.kind == "film" and isinstance(x.law.temperature, laws.Radiation)]
+
+
+def copper(network: Network) -> list[tuple[Source, laws.Linear]]:
+    """Losses that follow their winding's temperature."""
+    return [(s, s.law.temperature) for s in network.sources if isinstance(s.law.temperature, laws.Linear)]

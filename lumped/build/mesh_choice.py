@@ -6,8 +6,6 @@ times the elements. Before that, one field of quadratic elements says along whic
 Where smaller triangles of one part alone do what smaller ones everywhere would, it alone has them.
 """
 
-from __future__ import annotations
-
 import hashlib
 import json
 from collections.abc import Iterable, Mapping
@@ -207,7 +205,7 @@ class _Way:
         """One more would tell more: two known halvings show the order."""
         return len(self.moves) == self.level < 2
 
-    def less(self, gain: Kelvins) -> _Way:
+    def less(self, gain: Kelvins) -> "_Way":
         """After smaller triangles of one part have moved the hot spots by so much, a halving's worth at most."""
         rest = [{p: max(K - gain[p], 0.5**ORDER * K) for p, K in move.items()} for move in self.moves]
         return replace(self, moves=tuple(rest))
@@ -262,12 +260,9 @@ def _looked_for(looks: _Looks, accuracy: float, most: int) -> MeshChoice:
             there, halvings = how.along(way, 0.5), ways[way]
             new = () if len(halvings.moves) > halvings.level else (looks.moved(how, there),)
             how, ways[way] = there, _Way((*halvings.moves, *new), halvings.level + 1)
-            stale |= _not_refined(ways) - set(IN_PLANE if way not in IN_PLANE else ways)  # ends and axis overlap
-
-
-def _not_refined(ways: Mapping[str, _Way]) -> set[str]:
-    """Those refined know the order that they show, and keep it."""
-    return {way for way, halvings in ways.items() if halvings.level == 0}
+            # Those refined know the order that they show, and keep it; ends and axis overlap.
+            unrefined = {way for way, halvings in ways.items() if halvings.level == 0}
+            stale |= unrefined - set(IN_PLANE if way not in IN_PLANE else ways)
 
 
 def _one_part_finer(

@@ -1,14 +1,12 @@
 """A network as small as the wish allows: error against number of states, checked at points it has not seen."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
 from geom import Machine
 from geom.one_thread import one_blas_thread
-from lumped.build.load_cases import load_cases
+from lumped.build.fixed_coefficients import load_cases
 from lumped.build.mesh_choice import MOST_UNKNOWNS, MeshChoice, chosen_mesh, size_of
 from lumped.build.pipeline import ACROSS, AXIAL, Built, Meshing, Progress, meshed, reduced, silent
 from lumped.condensation.greedy_enrichment import Enrichment, Size, checks, enrich
@@ -62,11 +60,6 @@ class NetworkSize:
         }
 
 
-def accuracy_of(accuracy: float) -> Accuracy:
-    """Hot spots and points within `accuracy` percent of a part's own rise, means within half of it."""
-    return Accuracy(accuracy / 2, accuracy, accuracy)
-
-
 @one_blas_thread
 def accurate_network(
     machine: Machine, accuracy: float, size_m: float = 0.06, progress: Progress = silent, say: Progress = silent
@@ -116,7 +109,7 @@ def smallest_network(
     ready = meshed(machine, how or Meshing(size_m, segments, ACROSS, AXIAL * size_m), progress)
     progress("what the parts can look like")
     reduction = reduced(ready, recipe, motor_zones(machine))
-    cases, limit = load_cases(machine, reduction), accuracy_of(accuracy)
+    cases, limit = load_cases(machine, reduction), Accuracy(accuracy / 2, accuracy, accuracy)
     progress("error against number of states")
     at_points = [reduction.random_point(k) for k in range(points_each)]
     at_points += [reduction.nominal_point(), *(reduction.extreme_point(k) for k in range(points_each))]

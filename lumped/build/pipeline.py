@@ -1,7 +1,5 @@
 """From a machine to a model that can run a test: mesh, field, network, films and losses; cached by content."""
 
-from __future__ import annotations
-
 import hashlib
 import pickle
 from collections.abc import Callable, Mapping
@@ -17,8 +15,8 @@ from geom import Machine, NamedMesh, build_mesh
 from geom.description.materials import Material
 from geom.one_thread import one_blas_thread
 from geom.storage import cache_folder
+from lumped.condensation.condensed import Zone
 from lumped.condensation.reduction import Recipe, Reduction, reduce
-from lumped.condensation.zone import Zone
 from lumped.machine.motor import boundaries, fluids, motor_network, nominal_coefficients
 from lumped.machine.path import path_of
 from lumped.machine.shapes import wound
@@ -57,11 +55,11 @@ class Meshing:
     bends: Bends | None = None
 
     @property
-    def coarser(self) -> Meshing:
+    def coarser(self) -> "Meshing":
         """Elements twice as large every way; arcs keep their chords, so that both meshes have the same volume."""
         return replace(self, size_m=2 * self.size_m, across=self.across / 2, axial_m=2 * self.axial_m)
 
-    def along(self, way: str, times: float) -> Meshing:
+    def along(self, way: str, times: float) -> "Meshing":
         """Elements so many times as large one way, "size_m", "across" or "axial_m", with the same chords; towards
         the ends of a part, which has one way of its own, a step finer."""
         if way not in ("size_m", "across", "axial_m"):
@@ -80,14 +78,10 @@ class Built:
     small: Network | None = None
 
     @property
+    @once
     def field(self) -> FieldModel:
         """Conduction on the mesh, assembled anew: two thirds of all the bytes, which few commands want."""
-        return _field_of(self)
-
-
-@once
-def _field_of(model: Built) -> FieldModel:
-    return field_of(model.machine, model.mesh, model.meshing.bends)
+        return field_of(self.machine, self.mesh, self.meshing.bends)
 
 
 def field_of(machine: Machine, mesh: NamedMesh, bends: Bends | None = None) -> FieldModel:
@@ -138,7 +132,10 @@ def prepared(
 def meshed(machine: Machine, how: Meshing, progress: Progress = silent) -> Prepared:
     """Mesh and conduction on a mesh of given fineness."""
     progress("mesh")
-    mesh = with_cells(machine, plain_mesh(machine, how))
+    mesh = plain_mesh(machine, how)
+    for jacket in (part.name for part in machine.fluids if part.material != "air"):  # its walls, along its coolant
+        path = path_of(machine, jacket)
+        mesh = cut(mesh, jacket, path.along, path.cells)
     progress(f"conduction on {len(mesh.points)} points")
     return Prepared(machine, mesh, field_of(machine, mesh, how.bends), *coefficients_on(machine, mesh), how)
 
@@ -152,14 +149,6 @@ def coefficients_on(machine: Machine, mesh: NamedMesh) -> tuple[dict[str, float]
     """Nominal films and contacts (W/m2/K) of the faces and contacts of a mesh."""
     faces = {name: (patch.part, patch.fluid) for name, patch in mesh.patches.items()}
     return nominal_coefficients(machine, faces, mesh.contacts)
-
-
-def with_cells(machine: Machine, mesh: NamedMesh) -> NamedMesh:
-    """The mesh with the walls of every jacket cut along the way of its coolant."""
-    for jacket in (part.name for part in machine.fluids if part.material != "air"):
-        path = path_of(machine, jacket)
-        mesh = cut(mesh, jacket, path.along, path.cells)
-    return mesh
 
 
 def reduced(ready: Prepared, recipe: Recipe, zones: Mapping[str, Zone] | None = None) -> Reduction:

@@ -1,7 +1,5 @@
 """Errors of mesh and condensation at a machine's rated point, looked at once and kept."""
 
-from __future__ import annotations
-
 import hashlib
 import json
 from collections.abc import Iterable, Iterator, Mapping
@@ -9,7 +7,6 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 from math import log
 from types import MappingProxyType
-from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -18,12 +15,10 @@ from geom.disk_cache import recalled, store
 from geom.storage import cache_folder
 from lumped.build.fixed_coefficients import FixedCoefficients, rated
 from lumped.build.pipeline import Built, coefficients_on, meshed
+from lumped.condensation.error_budget import MonitoredPlaces
 from lumped.condensation.recovery import PartShape, Shapes, locate
 from lumped.machine.bases import on_every_base
 from lumped.model.network import Array, Network, Row
-
-if TYPE_CHECKING:
-    from lumped.condensation.error_budget import MonitoredPlaces
 
 SPREAD = 2.0  # every film and contact is multiplied by up to this in one further look: what most calibrations do
 STEP = 1.1  # factors are rounded to its powers: within them one look serves, errors change little
@@ -113,7 +108,7 @@ def _steady_and_step(
     yield from zip(point.steps_of_field(field), point.steps_of_network(network, field), strict=True)
 
 
-def _largest(reader: Reader, answers: Iterable[tuple[Array, Array]]) -> dict[str, float]:
+def _largest(reader: "Reader", answers: Iterable[tuple[Array, Array]]) -> dict[str, float]:
     """Place -> the largest difference (K) between field and network."""
     each = [reader.differences(exact, approximation) for exact, approximation in answers]
     return {name: max(off[name] for off in each) for name in each[0]}
@@ -170,15 +165,11 @@ class Reader:
             out[block.dofs.start + nodes] = weights
         elif p.kind == "surface":
             out[: self.field.n] = self.field.face_mean(self.field.film(place).trace)
-        else:
-            self._add_means(out, p.mean)
+        else:  # a sum of means of parts and of fluids; shapes of a zone are left out
+            for i, weight in zip(p.mean.index, p.mean.weights, strict=True):
+                state = self.network.states[i]
+                if state in self.field.blocks:
+                    out[: self.field.n] += weight * self.field.mean(state)
+                elif state in self.point.fluids:
+                    out[self.field.n + self.point.fluids.index(state)] += weight
         return out
-
-    def _add_means(self, out: Array, mean: Row) -> None:
-        """A place that is a sum of means of parts and of fluids; shapes of a zone are left out."""
-        for i, weight in zip(mean.index, mean.weights, strict=True):
-            name = self.network.states[i]
-            if name in self.field.blocks:
-                out[: self.field.n] += weight * self.field.mean(name)
-            elif name in self.point.fluids:
-                out[self.field.n + self.point.fluids.index(name)] += weight

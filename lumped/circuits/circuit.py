@@ -4,8 +4,6 @@ Every cell is a node whose temperature is what leaves it: it receives m cp (T_be
 What a circuit carries from its inlet to its outlet is m cp (T_out - T_in) at every instant, exactly.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
@@ -15,8 +13,17 @@ from itertools import pairwise
 import numpy as np
 
 from geom.constants import L_MIN, M3_H
-from lumped.circuits.hydraulics import Array, Duct, Passage, parallel_shares, pressure_drop, pumping_power, split
-from lumped.circuits.passages import Bore, Nozzles
+from lumped.circuits.hydraulics import (
+    Array,
+    Bore,
+    Duct,
+    Nozzles,
+    Passage,
+    parallel_shares,
+    pressure_drop,
+    pumping_power,
+    split,
+)
 from lumped.correlations.ducts import duct_film, schmidt_helical, staton_rectangle
 from lumped.correlations.info import Info
 from lumped.correlations.streams import LEAST, MOST, restretched, streamed, warmed
@@ -165,7 +172,12 @@ class Circuit:
         own, whose shares follow flow and temperature, and sum to 1.
         """
         rate = self._rate(warmed(self.liquid, self.at_degC))
-        paths = self._paths
+        # Branch -> its edges from the inlet to where the branches meet.
+        nodes = {
+            branch: [self.cell(branch, k) for k in range(self.cells * len(passes))]
+            for branch, passes in self.branches.items()
+        }
+        paths = {branch: list(pairwise([self.inlet, *cells, self.outlet])) for branch, cells in nodes.items()}
         ways = (
             mean_row(network, [node for path in paths.values() for edge in path[:-1] for node in edge]),
             mean_row(network, [node for path in paths.values() for edge in path[1:] for node in edge]),
@@ -176,15 +188,6 @@ class Circuit:
         branches = ((f".{name}", path, self._shared(name)) for name, path in paths.items())
         back = [("", self._return, rate)] if self._return else []
         return [link for of in (*branches, *back) for link in self._both_ways(network, *of, ways)]
-
-    @property
-    def _paths(self) -> dict[str, list[Edge]]:
-        """Branch -> its edges from the inlet to where the branches meet."""
-        nodes = {
-            branch: [self.cell(branch, k) for k in range(self.cells * len(passes))]
-            for branch, passes in self.branches.items()
-        }
-        return {branch: list(pairwise([self.inlet, *cells, self.outlet])) for branch, cells in nodes.items()}
 
     @property
     def _return(self) -> list[Edge]:

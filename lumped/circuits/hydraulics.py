@@ -1,7 +1,6 @@
-"""Pressure along coolant paths, and the power that pumps and fans take."""
+"""What coolants pass: channels, bores of shafts, nozzles; pressure along it, and the power of pumps and fans."""
 
-from __future__ import annotations
-
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Protocol
@@ -9,7 +8,9 @@ from typing import Protocol
 import numpy as np
 
 from geom.arrays import Array
-from lumped.correlations.ducts import LAMINAR, TURBULENT
+from lumped.correlations.ducts import LAMINAR, TURBULENT, duct_film
+from lumped.correlations.info import Info
+from lumped.correlations.oil import sprayed_face
 from lumped.transfer.properties import Fluid
 
 POINTS = 1600  # of a split, 2 % apart in flow, beside the kinks of the friction: straight in between to 1e-4 of a share
@@ -18,6 +19,8 @@ COIL_JUMP = 2.2e4  # Re at which his turbulent friction steps up
 SLOWEST = 1e-3  # where a split begins below the least flow: branches may take so little
 STRAIGHT = 1e-3  # of a share
 ROUGHNESS = 2.5e-6  # m, drawn or die-cast channel
+FILM_M = 1e-3  # of oil on a face
+BORE = 3.0  # length of a nozzle over its diameter: where the pressure is lost
 
 
 class Passage(Protocol):
@@ -69,6 +72,75 @@ class Duct:
     def wall(self) -> float:
         """Wetted area on all four sides (m2)."""
         return 2 * self.parallel * (self.width + self.height) * self.length
+
+
+@dataclass(frozen=True)
+class Bore:
+    """Equal round bores side by side: diameter, length (m); bends of 90 degrees.
+
+    One that turns about its own axis is as one that stands: a laminar flow turns with it, and its film stays.
+    """
+
+    diameter: float
+    length: float
+    bends: int = 0
+    parallel: int = 1
+    coil: float = 0.0
+
+    @property
+    def section(self) -> float:
+        """Of all together (m2)."""
+        return self.parallel * 0.25 * math.pi * self.diameter**2
+
+    @property
+    def volume(self) -> float:
+        """m3"""
+        return self.section * self.length
+
+    @property
+    def wall(self) -> float:
+        """Wetted area (m2)."""
+        return self.parallel * math.pi * self.diameter * self.length
+
+    def film(self, flow: float, fluid: Fluid) -> tuple[float, Info]:
+        """h (W/m2/K) at a flow (m3/s)."""
+        return duct_film(flow / self.section, self.diameter, self.length, fluid)
+
+
+@dataclass(frozen=True)
+class Nozzles:
+    """Equal nozzles and the face under them.
+
+    diameter : of a nozzle (m);  wall : area of the face (m2);  run : way of the oil along it (m)
+    drip : whether oil falls from them without a jet
+    """
+
+    number: int
+    diameter: float
+    wall: float
+    run: float
+    drip: bool = False
+    bends: int = 0
+    coil: float = 0.0
+
+    @property
+    def section(self) -> float:
+        """Of all nozzles (m2)."""
+        return self.number * 0.25 * math.pi * self.diameter**2
+
+    @property
+    def length(self) -> float:
+        """Of a nozzle (m)."""
+        return BORE * self.diameter
+
+    @property
+    def volume(self) -> float:
+        """Of the oil on the face (m3)."""
+        return FILM_M * self.wall
+
+    def film(self, flow: float, fluid: Fluid) -> tuple[float, Info]:
+        """h (W/m2/K) at a flow (m3/s)."""
+        return sprayed_face(flow, self.number, self.diameter, self.wall, self.run, fluid, self.drip)
 
 
 def friction(Re: float, relative_roughness: float = 0.0) -> float:

@@ -1,7 +1,5 @@
 """Shapes found once, kept by the content they belong to, and found again for nearby coefficients."""
 
-from __future__ import annotations
-
 import hashlib
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
@@ -47,7 +45,8 @@ class BasisCache:
 
     def keep(self, centre: Centre, bases: Mapping[str, Any], least: float = WEAKEST) -> Pairs:
         """What is worth keeping of principal fields, in single precision, written if there is a folder."""
-        pairs = {part: _worth(p.strength, p.fields, min(least, WEAKEST)) for part, p in bases.items()}
+        strong = {part: p.strength > min(least, WEAKEST) for part, p in bases.items()}
+        pairs = {p: (bases[p].strength[s], bases[p].fields[:, s].astype(np.float32)) for p, s in strong.items()}
         if self.folder is None:
             return pairs
         out: dict[str, Any] = {"centre": centre.values}
@@ -77,8 +76,3 @@ def _pairs(file: Path) -> Pairs:
     with np.load(file) as archive:
         parts = [name.removesuffix("/strength") for name in archive.files if name.endswith("/strength")]
         return {part: (archive[f"{part}/strength"], archive[f"{part}/fields"]) for part in parts}
-
-
-def _worth(strength: Floats, fields: Floats, least: float) -> tuple[Floats, Floats]:
-    strong = strength > least
-    return strength[strong], fields[:, strong].astype(np.float32)

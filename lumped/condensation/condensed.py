@@ -6,7 +6,8 @@ c_k da_k/dt = -k_k a_k + heat in weighted by shape k    a_k amplitude of a shape
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -20,6 +21,14 @@ if TYPE_CHECKING:
     from fem.matrices.assembly import FieldModel
     from fem.matrices.surface import Touch, Trace
     from fem.solvers.snapshots import Basis
+
+
+@dataclass(frozen=True)
+class Zone:
+    """Where in a part a loss sits: density per tetrahedron, or of tetrahedron centres (m); None is uniform."""
+
+    part: str
+    density: Callable[[Array], Array] | Array | None = None
 
 
 def network_in(

@@ -1,7 +1,5 @@
 """One error budget: what the mesh, the condensation and the time steps leave in a temperature, in K per place."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
 from typing import Any
@@ -43,7 +41,7 @@ class ErrorBudget:
         return {p.place: p.total_K for p in self.places}
 
     @classmethod
-    def worst(cls, budgets: Iterable[ErrorBudget]) -> ErrorBudget:
+    def worst(cls, budgets: "Iterable[ErrorBudget]") -> "ErrorBudget":
         """Place by place the run in which most is left."""
         largest: dict[str, PlaceError] = {}
         for place in (p for budget in budgets for p in budget.places):
@@ -51,7 +49,7 @@ class ErrorBudget:
                 largest[place.place] = place
         return cls(tuple(largest.values()))
 
-    def with_condensation(self, more_K: Mapping[str, float]) -> ErrorBudget:
+    def with_condensation(self, more_K: Mapping[str, float]) -> "ErrorBudget":
         """With so much more at some places, as a network of fewer shapes leaves."""
 
         def one(p: PlaceError) -> PlaceError:

@@ -1,19 +1,15 @@
 """From a wish to a network: favour the parts that miss, look at new random points, learn those before them, repeat."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from lumped.condensation.reduction import FullPoint, Reduction
 from lumped.condensation.reduction_error import Accuracy, Errors, LoadCases, merged, point_errors
 from lumped.model.network import Network
-
-if TYPE_CHECKING:
-    from lumped.condensation.reduction import FullPoint, Reduction
 
 Tell = Callable[[str], None]
 FAVOURS = 6  # times the shapes are dealt out anew before new solutions are asked for
@@ -80,7 +76,7 @@ class Size:
     @classmethod
     def of(
         cls, reduction: Reduction, requested: int, points: Sequence[Check], cases: LoadCases, accuracy: Accuracy
-    ) -> Size:
+    ) -> "Size":
         """points : the nominal one first, then random ones"""
         network = reduction.network(tolerance=0.0, max_states=max(requested, len(reduction.field.blocks)))
         nominal, *others = errors_at(points, reduction, network, cases)

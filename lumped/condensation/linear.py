@@ -1,7 +1,5 @@
 """A condensed network at given coefficients, as dense matrices: for training, checks and steady questions."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

@@ -1,7 +1,5 @@
 """From the states of a condensed network back to the field: pictures, hot spots, and the value at any point."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
@@ -29,7 +27,7 @@ class PartShape:
     """
 
     points: Ints
-    elements: Elements
+    elements: "Elements"
     V: Array
     weights: Array
     states: Ints
@@ -45,7 +43,7 @@ class PartShape:
         return np.asarray(self.elements.tets)
 
     @cached_property
-    def tree(self) -> cKDTree:
+    def tree(self) -> "cKDTree":
         from scipy.spatial import cKDTree
 
         return cKDTree(self.xyz[self.tets].mean(1))

@@ -5,8 +5,6 @@ compressed in the part's own energy. Contacts and films stay links of their own,
 one of them may change afterwards at no cost. This is the only file of the room that knows `fem`.
 """
 
-from __future__ import annotations
-
 import dataclasses
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
@@ -34,8 +32,7 @@ from fem.solvers.snapshots import (
 )
 from fem.solvers.solve import Factorise, Solve, Solver, film_columns
 from lumped.condensation.basis_cache import BasisCache, Centre
-from lumped.condensation.condensed import network_in
-from lumped.condensation.zone import Zone
+from lumped.condensation.condensed import Zone, network_in
 from lumped.model.network import Array, Network
 
 __all__ = ["FullPoint", "Recipe", "Reduction", "Zone", "reduce"]

@@ -1,7 +1,5 @@
 """How far a condensed network is from its field, in the numbers a user cares about."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
@@ -27,7 +25,7 @@ class Accuracy:
     hot: float = 2.0
     point: float = 2.0
 
-    def excess(self, error: PartError) -> float:
+    def excess(self, error: "PartError") -> float:
         """1 where a part is just good enough."""
         return max(error.mean / self.mean, error.hot / self.hot, error.point / self.point)
 
@@ -143,20 +141,6 @@ def random_load_cases(
     return LoadCases(tuple(zones), tuple(fluids), np.array([rated_watts, *random, 0.5 * rated_watts]), np.array(kelvin))
 
 
-def network_states(
-    network: Network, films: Mapping[str, float], contacts: Mapping[str, float], cases: LoadCases, shift: float = 0.0
-) -> Array:
-    """(n_states, n_case) of the network at given coefficients, rises over the surroundings; shift (1/s) as of Point."""
-    system = linear(network, films, contacts)
-    load = np.column_stack([unit_load(network, zone, system.solid) for zone in cases.zones]) @ cases.watts.T
-    names = (*network.states, *network.boundaries)
-    order = [[names[c] for c in system.fluid].index(fluid) for fluid in cases.fluids]
-    out = np.zeros((len(network.states), len(cases.watts)))
-    heat = load + system.B[:, order] @ cases.kelvin.T
-    out[system.solid] = cho_solve(cho_factor(system.A + np.diag(shift * system.C)), heat)
-    return out
-
-
 def point_errors(
     network: Network,
     films: Mapping[str, float],
@@ -170,5 +154,13 @@ def point_errors(
     Early, in percent of the machine's largest rise: most parts have none of their own yet.
     """
     shapes, floor = _shapes(network), 1.0 if shift else FLOOR
-    recovered = shapes.field(network_states(network, films, contacts, cases, shift))
+    # Of the network: rises over the surroundings (n_states, n_case); shift (1/s) as of Point
+    system = linear(network, films, contacts)
+    load = np.column_stack([unit_load(network, zone, system.solid) for zone in cases.zones]) @ cases.watts.T
+    names = (*network.states, *network.boundaries)
+    order = [[names[c] for c in system.fluid].index(fluid) for fluid in cases.fluids]
+    out = np.zeros((len(network.states), len(cases.watts)))
+    heat = load + system.B[:, order] @ cases.kelvin.T
+    out[system.solid] = cho_solve(cho_factor(system.A + np.diag(shift * system.C)), heat)
+    recovered = shapes.field(out)
     return merged([_between(shapes, T, its, floor=floor) for T, its in zip(full.T, recovered.T, strict=True)])

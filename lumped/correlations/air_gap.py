@@ -1,7 +1,5 @@
 """The annular gap between rotor and stator."""
 
-from __future__ import annotations
-
 import math
 
 from lumped.correlations.info import Info, checked

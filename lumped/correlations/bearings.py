@@ -1,7 +1,5 @@
 """Bearings and brushes: friction, and the way heat takes through a bearing."""
 
-from __future__ import annotations
-
 from lumped.correlations.info import Info, checked
 
 CONTACT_PRESSURE_PA = 2.0e4  # usual spring pressure of carbon brushes, 15 to 25 kPa

@@ -1,7 +1,5 @@
 """Contacts, gaps and radiation between solids."""
 
-from __future__ import annotations
-
 import math
 
 from geom.constants import SIGMA, ZERO_C

@@ -1,7 +1,5 @@
 """Forced flow inside ducts, jackets and channels."""
 
-from __future__ import annotations
-
 import math
 
 from lumped.correlations.info import Info, checked
@@ -109,14 +107,11 @@ def gnielinski_annulus(
     share = min(max((Re - LAMINAR) / (TURBULENT - LAMINAR), 0.0), 1.0)
     Nu = (1.0 - share) * hausen_laminar(min(Re, LAMINAR), Pr, D, length, 3.66 + 1.2 * a**-0.8)
     if share > 0.0:
-        Nu += share * _annulus_turbulent(max(Re, TURBULENT), Pr, a, D / length)
+        turbulent = max(Re, TURBULENT)
+        star = turbulent * ((1 + a * a) * math.log(a) + 1 - a * a) / ((1 - a) ** 2 * math.log(a))
+        f = 0.75 * a**-0.17 * (1.8 * math.log10(star) - 1.5) ** -2
+        k1 = 1.07 + 900 / turbulent - 0.63 / (1 + 10 * Pr)
+        entry = 1 + (D / length) ** (2 / 3)
+        Nu += share * ((f / 8) * turbulent * Pr / (k1 + 12.7 * math.sqrt(f / 8) * (Pr ** (2 / 3) - 1)) * entry)
     limits = {"Re": (0, 1e6), "Pr": (0.6, 1000)}
     return Nu * fluid.k / D, checked("gnielinski_annulus", "Gnielinski 2009", {"Nu": Nu, "Re": Re, "Pr": Pr}, limits)
-
-
-def _annulus_turbulent(Re: float, Pr: float, a: float, slenderness: float) -> float:
-    star = Re * ((1 + a * a) * math.log(a) + 1 - a * a) / ((1 - a) ** 2 * math.log(a))
-    f = 0.75 * a**-0.17 * (1.8 * math.log10(star) - 1.5) ** -2
-    k1 = 1.07 + 900 / Re - 0.63 / (1 + 10 * Pr)
-    entry = 1 + slenderness ** (2 / 3)
-    return (f / 8) * Re * Pr / (k1 + 12.7 * math.sqrt(f / 8) * (Pr ** (2 / 3) - 1)) * entry

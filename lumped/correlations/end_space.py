@@ -1,7 +1,5 @@
 """Air in the end space, stirred by the rotor."""
 
-from __future__ import annotations
-
 from typing import TypeVar
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Natural and forced convection between fins."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable
 

@@ -1,7 +1,5 @@
 """Forced convection on outer surfaces."""
 
-from __future__ import annotations
-
 from lumped.correlations.info import Info, checked
 from lumped.transfer.properties import Fluid, air
 

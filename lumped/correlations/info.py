@@ -1,7 +1,5 @@
 """What a correlation says about its own answer."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
@@ -30,11 +28,8 @@ class Info:
     @property
     def words(self) -> tuple[str, ...]:
         """Of each of them, with value and range."""
-        return tuple(f"{self.name}: {key} = {self.numbers[key]:.4g} outside {self._range(key)}" for key in self.outside)
-
-    def _range(self, key: str) -> str:
-        low, high = self.limits[key]
-        return f"{low:g} to {high:g} ({self.source})"
+        each = ((key, self.numbers[key], *self.limits[key]) for key in self.outside)
+        return tuple(f"{self.name}: {k} = {x:.4g} outside {a:g} to {b:g} ({self.source})" for k, x, a, b in each)
 
 
 def checked(name: str, source: str, numbers: Mapping[str, float], limits: Mapping[str, tuple[float, float]]) -> Info:
@@ -54,7 +49,13 @@ def domain(
     """
 
     def span(T: float) -> tuple[float, float] | None:
-        return _span(partial(info, T), usual[1], least, most)
+        """The sizes around the usual one, or around the first other that is in range; to 1 %."""
+        at, sizes = partial(info, T), (usual[1], *(least * (most / least) ** (k / SIZES) for k in range(SIZES + 1)))
+        inside = next((size for size in sizes if not at(size).outside), None)
+        if inside is None:
+            return None
+        low = _last(at, inside, least)
+        return (0.0 if low == least else low), _last(at, inside, most)
 
     every = list(degC)
     spans = {T: ends for T in every if (ends := span(T))}
@@ -68,16 +69,6 @@ def domain(
             spans[edge] = span(edge) or spans[inside]
     low, high = zip(*(spans[T] for T in sorted(spans)), strict=True)
     return Domain(info(*usual).name, tuple(sorted(spans)), low, high)
-
-
-def _span(info: Callable[[float], Info], usual: float, least: float, most: float) -> tuple[float, float] | None:
-    """The sizes around the usual one, or around the first other that is in range; to 1 %."""
-    sizes = (usual, *(least * (most / least) ** (k / SIZES) for k in range(SIZES + 1)))
-    inside = next((size for size in sizes if not info(size).outside), None)
-    if inside is None:
-        return None
-    low = _last(info, inside, least)
-    return (0.0 if low == least else low), _last(info, inside, most)
 
 
 def _last(info: Callable[[float], Info], inside: float, gone: float) -> float:

@@ -1,7 +1,5 @@
 """Natural convection from plain outer surfaces."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable
 

@@ -1,7 +1,5 @@
 """Oil on faces: free jets, and the film that runs off."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Rotating discs and shafts: film and windage."""
 
-from __future__ import annotations
-
 import math
 
 from lumped.correlations.info import Info, checked

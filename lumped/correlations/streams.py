@@ -1,7 +1,5 @@
 """Films of moving fluids over an input and a temperature together: by Reynolds number, so that no regime is cut."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace

@@ -1,7 +1,5 @@
 """Any correlation at compiled speed: tabulated once over the temperature difference."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterable
 
 import numpy as np

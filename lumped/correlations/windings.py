@@ -1,20 +1,17 @@
 """The T-circuit of a hollow cylinder."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 
 
 @dataclass(frozen=True)
 class TCircuit:
-    """Resistances (K/W) of a hollow cylinder: faces, ends (alike), star points to the mean node (negative)."""
+    """Resistances (K/W) of a hollow cylinder: faces, ends (alike), radial star point to the mean node (negative)."""
 
     outer: float
     inner: float
     radial_mean: float
     end: float
-    axial_mean: float
 
 
 def mellor(outer_radius: float, inner_radius: float, length: float, k_radial: float, k_axial: float) -> TCircuit:
@@ -29,4 +26,4 @@ def mellor(outer_radius: float, inner_radius: float, length: float, k_radial: fl
     squares = outer_radius**2 + inner_radius**2
     mean = -(squares - 4 * outer_radius**2 * inner_radius**2 * log / d) / (2 * radial * d)
     end = length / (2 * math.pi * k_axial * d)
-    return TCircuit(outer, inner, mean, end, -end / 3.0)
+    return TCircuit(outer, inner, mean, end)

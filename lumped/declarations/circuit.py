@@ -1,12 +1,9 @@
 """[circuits.NAME] of network.toml."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable
 
 from lumped.circuits.circuit import PER_M3S, Circuit, Cooler, Pass
-from lumped.circuits.hydraulics import Duct
-from lumped.circuits.passages import Bore, Nozzles
+from lumped.circuits.hydraulics import Bore, Duct, Nozzles
 from lumped.declarations.films import read_coolant
 from lumped.schemas.reader import Table, suggestion
 from lumped.transfer.exchanger import ARRANGEMENTS, Flow
@@ -29,7 +26,13 @@ def _circuit(name: str, table: Table, nodes: list[str], boundaries: list[str]) -
     passes: dict[str, tuple[Pass, ...]] = {}
     for item in table.listed("passes"):
         branch = item.word("branch", "1")
-        passes[branch] = (*passes.get(branch, ()), _pass(item, nodes))
+        walls = item.shares("wall")
+        for wall in walls:
+            if wall not in nodes:
+                raise item.error(f"unknown wall '{wall}'", suggestion(wall, nodes))
+        if not 0.0 < sum(walls.values()) <= 1.0 + 1e-9 or min(walls.values()) <= 0.0:
+            raise item.error(f"shares of 'wall' sum to {sum(walls.values()):g}", "positive shares, 1 at most together")
+        passes[branch] = (*passes.get(branch, ()), Pass(_passage(item), walls))
         item.close()
     if not passes:
         raise table.error("no passes", "passes = [{ wall = ..., width_mm = ..., height_mm = ..., length_m = ... }]")
@@ -51,16 +54,6 @@ def _flow(table: Table, stem: str) -> tuple[float, str | None, str]:
             of = table.word(f"{stem}_{unit}_input", "") or None
             return table.number(f"{stem}_{unit}") * scale, of, unit
     raise table.error(f"no {stem}", f"{stem}_l_min or {stem}_m3_h = usual flow; {stem}_l_min_input where it varies")
-
-
-def _pass(table: Table, nodes: list[str]) -> Pass:
-    walls = table.shares("wall")
-    for wall in walls:
-        if wall not in nodes:
-            raise table.error(f"unknown wall '{wall}'", suggestion(wall, nodes))
-    if not 0.0 < sum(walls.values()) <= 1.0 + 1e-9 or min(walls.values()) <= 0.0:
-        raise table.error(f"shares of 'wall' sum to {sum(walls.values()):g}", "positive shares, 1 at most together")
-    return Pass(_passage(table), walls)
 
 
 def _passage(table: Table) -> Duct | Bore | Nozzles:

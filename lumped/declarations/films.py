@@ -1,6 +1,4 @@
-"""Films of known surfaces in network.toml by correlation: still air, moving air and coolant, contacts."""
-
-from __future__ import annotations
+"""Films of known surfaces by correlation, as files declare them: still air, moving air and coolant, contacts, fans."""
 
 from collections.abc import Callable
 from dataclasses import replace
@@ -10,9 +8,8 @@ from geom.plugins import plugins
 from lumped.correlations import Info, film_tabulated
 from lumped.correlations.streams import Moving, streamed
 from lumped.schemas.reader import Table
-from lumped.transfer.coolant import NAMES, Coolant, coolant
-from lumped.transfer.laws import FILMS, FilmTable, Fixed, Law
-from lumped.transfer.oils import DataSheet
+from lumped.transfer.coolant import NAMES, Coolant, DataSheet, coolant
+from lumped.transfer.laws import FILMS, FilmTable, Fixed, InputPower, Law
 from lumped.transfer.properties import Fluid, air
 from lumped.transfer.streamed import Streamed
 
@@ -20,6 +17,7 @@ Still = Callable[[float, float], tuple[float, Info]]
 SHEET = ("viscosity_40C_mm2_s", "viscosity_100C_mm2_s", "density_15C_kg_m3")  # of an oil
 Film = Callable[[float], tuple[float, Info]]  # of |input|
 Of = Callable[[float], Fluid]
+EXPONENT = 0.8  # turbulent along fins and end shields (Staton and Cavagnino 2008); 0.5 laminar
 TABLED = 4.0  # of the fastest that is expected: tables reach five times as far (streams.REACH)
 
 
@@ -155,3 +153,14 @@ def contact(table: Table) -> Law:
     if "pair" in table:
         return Fixed(contact_film(table.word("pair", None, PRESSED))[0])
     return Fixed(gap_film(GAPS[table.word("joint", None, GAPS)]))
+
+
+def shaft_fan(table: Table) -> InputPower:
+    """Faces that stand still in the air of a fan on the shaft: of a link, and of a part in [films.outer].
+
+    fan = { h_W_m2K = 40, at_rpm = 1460, exponent = 0.8, speed = "speed_rpm" } is h = h0 |n / n0|^m (W/m2/K): the fan's
+    air goes with the speed n (affinity), its film with Re^m.
+    """
+    h, at = table.number("h_W_m2K"), table.number("at_rpm", low=1e-9)
+    exponent = table.number("exponent", EXPONENT, low=0.5, high=1.0)
+    return InputPower(h, ((table.word("speed", "speed_rpm"), at, exponent),))

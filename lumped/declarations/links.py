@@ -1,7 +1,5 @@
 """The laws of a link and of a stream in network.toml; correlations of known surfaces are in declarations/films.py."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import replace
 from functools import partial
@@ -11,11 +9,11 @@ from geom.constants import L_MIN, M3_H, RPM
 from lumped.correlations import Info
 from lumped.correlations.streams import Moving
 from lumped.declarations import films
+from lumped.declarations.films import shaft_fan
 from lumped.model.quantities import AIR, LIQUID
 from lumped.schemas.reader import Table, powers
 from lumped.transfer.laws import Fixed, InputPower, Law, Power, Radiation, Table as TableLaw
 from lumped.transfer.properties import Fluid
-from lumped.transfer.shaft_fan import shaft_fan
 from lumped.transfer.streamed import Streamed
 
 ROTATING = ("disc", "shaft")

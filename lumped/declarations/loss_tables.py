@@ -1,7 +1,5 @@
 """The losses of network.toml, by kind."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable, Collection, Mapping
 from functools import partial

@@ -1,14 +1,13 @@
 """Networks declared by hand in network.toml. Every key is described in docs/network-toml.md."""
 
-from __future__ import annotations
-
-from collections.abc import Callable, Container, Iterable, Mapping
+from collections.abc import Callable, Container, Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from geom.description.names import plain_name
 from geom.description.roles import Identity, Role, identity
 from geom.description.toml_file import read_toml
 from geom.errors import InputError
@@ -18,8 +17,8 @@ from lumped.declarations.parameters import read_parameters
 from lumped.model.build import bare_network, node_link, node_source, stream, surface_place
 from lumped.model.network import NOTHING, Link, Network, Place, Source
 from lumped.model.quantities import INPUTS
-from lumped.model.soundness import checked_names, checked_path, islands
-from lumped.schemas.reader import Table, suggestion
+from lumped.model.topology import reached
+from lumped.schemas.reader import Table, excerpt, suggestion
 from lumped.sources.loss_laws import EDDY
 from lumped.transfer.laws import Law, Scaled
 from lumped.transfer.reversal import Direction, OneWay
@@ -30,6 +29,7 @@ if TYPE_CHECKING:
 
 SECTIONS = ("nodes", "surfaces", "means", "links", "streams", "losses", "circuits", "parameters")
 RIGHT = "a network.toml (docs/network-toml.md)"
+RESERVED = set("@#")  # of effects at places, and of shapes inside parts
 LARGEST_SHARE = 10.0  # that a law refers to: nothing is loaded tenfold, so 100 is a percentage
 
 
@@ -41,26 +41,15 @@ def read_identities(
     for name, table in around.items():
         if name not in boundaries:
             raise table.error(f"'{name}' is not a boundary", suggestion(name, boundaries))
-    each = {name: _declared_identity(table) for name, table in {**nodes, **around}.items()}
-    out = {name: statement for name, statement in each.items() if statement is not None}
+    out: dict[str, Identity] = {}
+    for name, table in {**nodes, **around}.items():
+        role = Role(table.word("role", None, list(Role))) if "role" in table else None
+        turns = table.flag("turns") if "turns" in table else None
+        if role is not None or turns is not None:
+            out[name] = identity(role, turns)
     for table in around.values():
         table.close()
     return {**out, **{cell: identity(Role.COOLANT, False) for cell in cells}}
-
-
-def _declared_identity(table: Table) -> Identity | None:
-    role = Role(table.word("role", None, list(Role))) if "role" in table else None
-    turns = table.flag("turns") if "turns" in table else None
-    return None if role is None and turns is None else identity(role, turns)
-
-
-def read_quantities(top: Table) -> dict[str, str]:
-    """[inputs.NAME] quantity = "speed": what an input measures."""
-    out = {}
-    for name, table in top.tables("inputs").items():
-        out[name] = table.word("quantity", None, INPUTS)
-        table.close()
-    return out
 
 
 def load_network(
@@ -89,7 +78,7 @@ def _with_shares(data: Any, shares: Container[str], note: Callable[[str], None])
     return {key: _with_shares(x, shares, note) for key, x in data.items()}
 
 
-def load_circuits(path: str | Path) -> dict[str, Circuit]:
+def load_circuits(path: str | Path) -> "dict[str, Circuit]":
     """The coolant circuits of a network.toml, for pressure drop and pump power."""
     top = Table(read_toml(Path(path), RIGHT), str(path))
     return _circuits(top, top.tables("nodes"), top.table("network").words("boundaries"))
@@ -123,7 +112,11 @@ def _read(data: Mapping[str, Any], where: str) -> Network:
         raise head.error(f"'{min(clash)}' is a node and a boundary", "one or the other")
     identities = read_identities(top, nodes, boundaries, cells)
     network = replace(network, places=_places(network, top, nodes, cells), settles_s=settles)
-    network = replace(network, declared=identities, quantities=read_quantities(top))
+    quantities = {}  # [inputs.NAME] quantity = "speed": what an input measures
+    for signal, table in top.tables("inputs").items():
+        quantities[signal] = table.word("quantity", None, INPUTS)
+        table.close()
+    network = replace(network, declared=identities, quantities=quantities)
     loops = [link for circuit in circuits.values() for link in circuit.links(network)]
     links = [*_links(network, top), *_streams(network, top), *loops]
     network = replace(network, links=tuple(links), sources=tuple(_sources(network, top)))
@@ -134,7 +127,7 @@ def _read(data: Mapping[str, Any], where: str) -> Network:
     return _checked(network, where)
 
 
-def _circuits(top: Table, nodes: Iterable[str], boundaries: Iterable[str]) -> dict[str, Circuit]:
+def _circuits(top: Table, nodes: Iterable[str], boundaries: Iterable[str]) -> "dict[str, Circuit]":
     """Loaded only where a file has some: the libraries behind their films take a while to load."""
     if "circuits" not in top:
         return {}
@@ -238,8 +231,9 @@ def _sources(network: Network, top: Table) -> list[Source]:
     tables = top.tables("losses")
     kinds, laws = loss_kinds(tables), loss_laws(tables, network.quantities)
     out = {name: _source(network, name, tables[name.removesuffix(EDDY)], law) for name, law in laws.items()}
+    # What the model injects elsewhere leaves the measured total, at its own temperature, watt for watt.
     differences = [
-        _difference(out[name], out[part])
+        replace(out[name], name=f"loss:{name}:less:{part}", law=Scaled(out[part].law, -1.0), probe=out[part].probe)
         for name, kind in kinds.items()
         if kind == "measured"
         for other in deducted(tables[name], kinds)
@@ -260,12 +254,6 @@ def _source(network: Network, name: str, table: Table, law: Law) -> Source:
     return node_source(network, f"loss:{name}", table.word("kind"), shares, law, probe)
 
 
-def _difference(measured: Source, other: Source) -> Source:
-    """What the model injects elsewhere leaves the measured total, at its own temperature, watt for watt."""
-    name = f"{measured.name}:less:{other.name.removeprefix('loss:')}"
-    return replace(measured, name=name, law=Scaled(other.law, -1.0), probe=other.probe)
-
-
 def _checked(network: Network, where: str) -> Network:
     """Names that parameters act on exist, and the network can be a machine."""
     names = {i.name for i in network.elements} | {f"capacity:{s}" for s in network.states}
@@ -277,12 +265,46 @@ def _checked(network: Network, where: str) -> Network:
     # The network; InputError names the nodes that no heat can leave, and a network that stores none
     for island in islands(network):
         nodes = ", ".join(f"'{name}'" for name in island)
-        raise InputError(
-            f"no heat can leave {nodes}: nothing joins {'it' if len(island) == 1 else 'them'} to "
-            f"{' or '.join(network.boundaries) or 'a boundary'}",
-            where,
-            "a link, stream or surface to a boundary",
-        )
+        to = f"{'it' if len(island) == 1 else 'them'} to {' or '.join(network.boundaries) or 'a boundary'}"
+        right = "a link, stream or surface to a boundary"
+        raise InputError(f"no heat can leave {nodes}: nothing joins {to}", where, right)
     if not np.any(network.C > 0.0):
         raise InputError("no node has a heat capacity", where, "[nodes.NAME] C_J_K = ..., or mass_kg with cp_J_kgK")
     return network
+
+
+def checked_names(names: Iterable[str], where: str) -> None:
+    """InputError for a name that messages, tables and effects (KIND@PLACE) could not tell apart."""
+    for name in names:
+        if not name.strip() or plain_name(name, where).strip() != name or set(name) & RESERVED:
+            right = f"letters that can be printed, none of {' '.join(sorted(RESERVED))}, no space at either end"
+            raise InputError(f"{excerpt(name)} cannot be a name", where, right)
+
+
+def islands(network: Network) -> Iterator[list[str]]:
+    """Groups of nodes that are joined to each other but to no boundary."""
+    neighbours: dict[int, set[int]] = {i: set() for i in range(network.size)}
+    groups = [sorted({int(i) for i in (*link.rows, *link.cols)}) for link in network.links]
+    for place in network.places.values():
+        if place.kind == "surface" and place.fluid:  # what washes it may be joined by an effect
+            groups.append([*map(int, place.states), network.column(place.fluid)])
+    for group in groups:
+        for i in group:
+            neighbours[i] |= set(group)
+    n = len(network.states)
+    left = {*range(n)} - {*reached(range(n, network.size), neighbours.__getitem__)}
+    while left:
+        island = set(reached([min(left)], neighbours.__getitem__))
+        yield [network.states[i] for i in sorted(island)]
+        left -= island
+
+
+def checked_path(path: Sequence[str], where: str) -> Sequence[str]:
+    """A stream's way; InputError where it passes a node twice, or goes nowhere."""
+    if len(path) < 2:
+        raise InputError(f"path = {list(path)} leads nowhere", where, "two or more nodes, the inlet first")
+    for name in path:
+        if list(path).count(name) > 1:
+            right = "each node once; a loop that returns is [circuits.NAME] with a reservoir"
+            raise InputError(f"path passes '{name}' {list(path).count(name)} times", where, right)
+    return path

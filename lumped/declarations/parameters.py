@@ -1,7 +1,5 @@
 """What calibration may move in network.toml: prior_sd inside tables, and [parameters.NAME]."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import replace
 

@@ -1,7 +1,5 @@
 """A drive whose currents depend on the temperatures that they cause: run both in turn until they agree."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 

@@ -7,8 +7,6 @@ Where it brakes electrically the field is reversed: the machine generates, V = L
 is -L_af i^2. Friction brakes take the rest.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass, fields
 
 import numpy as np
@@ -31,7 +29,7 @@ class SeriesMachine:
     @classmethod
     def from_ratings(
         cls, power: float, speed_rpm: float, voltage: float, current: float, **others: float
-    ) -> SeriesMachine:
+    ) -> "SeriesMachine":
         """From shaft power (W), speed (1/min), voltage (V), current (A): T = L_af I^2 and V = R I + w L_af I."""
         omega = speed_rpm * RPM
         L_af = power / omega / current**2

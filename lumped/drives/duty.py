@@ -1,7 +1,5 @@
 """Standard duty types (IEC 60034-1) as load factors over time; a time given twice is a jump."""
 
-from __future__ import annotations
-
 from itertools import pairwise
 
 import numpy as np

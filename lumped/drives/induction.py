@@ -6,8 +6,6 @@ The equivalent circuit at constant speed, its phasors turned so that the cage's 
     v_d = Rs i_d - w (Ls - Lm^2 / Lr) i_q,   v_q = Rs i_q + w Ls i_d,   cage current = (Lm / Lr) i_q
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np
@@ -63,7 +61,7 @@ class InductionMachine:
 
     def operation(
         self, i_d: Array, i_q: Array, speed_rpm: Number, winding_degC: Number = 20.0, cage_degC: Number = 20.0
-    ) -> Operation:
+    ) -> "Operation":
         """What the machine does at two currents and a speed."""
         turning, slip = self.pole_pairs * np.asarray(speed_rpm, float) * RPM, self.slip_speed(i_d, i_q, cage_degC)
         w, Rs, Ls = turning + slip, self.stator_resistance(winding_degC), self.Lm + self.Ls_leak

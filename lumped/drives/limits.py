@@ -1,7 +1,5 @@
 """Where a function of one current is largest, or passes 0, for many operating points at once."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 
 import numpy as np

@@ -3,8 +3,6 @@
 v_d = R i_d - w Lq i_q,  v_q = R i_q + w (Ld i_d + psi),  T = 3/2 p (psi + (Ld - Lq) i_d) i_q   (peak dq values)
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np
@@ -104,10 +102,10 @@ class _Region:
     psi: Array
     side: float
 
-    def only(self, mask: Mask) -> _Region:
+    def only(self, mask: Mask) -> "_Region":
         return _Region(self.machine, self.w[mask], self.R[mask], self.psi[mask], self.side)
 
-    def other(self) -> _Region:
+    def other(self) -> "_Region":
         """The same limits on the other side, where i_q has the other sign: as with -R."""
         return _Region(self.machine, self.w, -self.R, self.psi, -self.side)
 
@@ -176,15 +174,11 @@ def _limited(region: _Region, target: Array) -> tuple[Array, Array]:
         more = (far > torque) & (torque < target * nearly)
         less = (far >= target * nearly) & (torque >= target * nearly) & (np.hypot(far_d, far_q) < np.hypot(i_d, i_q))
         i_d, i_q = np.where(more | less, far_d, i_d), np.where(more | less, -far_q, i_q)
-    nowhere = ~np.isfinite(i_d)
-    return np.where(nowhere, _quietest(region), i_d), np.where(nowhere, 0.0, i_q)
-
-
-def _quietest(region: _Region) -> Array:
-    """i_d at which the voltage is least without i_q."""
-    m, w, R = region.machine, region.w, region.R
-    i_d = -(w**2) * m.Ld * region.psi / (R**2 + w**2 * m.Ld**2 + TINY)
-    return np.clip(i_d, -m.current_limit, m.current_limit)
+    nowhere, m, w, R = ~np.isfinite(i_d), region.machine, region.w, region.R
+    # i_d at which the voltage is least without i_q
+    quietest = -(w**2) * m.Ld * region.psi / (R**2 + w**2 * m.Ld**2 + TINY)
+    quietest = np.clip(quietest, -m.current_limit, m.current_limit)
+    return np.where(nowhere, quietest, i_d), np.where(nowhere, 0.0, i_q)
 
 
 def _on_side(region: _Region, target: Array) -> tuple[Array, Array]:

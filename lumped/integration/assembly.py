@@ -1,7 +1,5 @@
 """All links and sources of a network as the kernel follows them: flat arrays, made once for each set of live terms."""
 
-from __future__ import annotations
-
 from collections import deque
 from collections.abc import Hashable, Iterable, Sequence
 from dataclasses import dataclass
@@ -110,7 +108,7 @@ class Assembly:
             self._packed[key] = _pack(patterns, steady[live])
         return self._packed[key]
 
-    def input_sizes(self, live: Mask) -> tuple[InputSize, ...]:
+    def input_sizes(self, live: Mask) -> "tuple[InputSize, ...]":
         """What the temperature laws of the live terms see of inputs."""
         key = live.tobytes()
         if key not in self._sizes:

@@ -1,6 +1,4 @@
-"""Where the heat goes: through every link and out of every source."""
-
-from __future__ import annotations
+"""Where the heat goes, through every link and out of every source; and is it what the losses declare?"""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -11,11 +9,15 @@ from geom.arrays import Array, Ints
 from lumped.integration.assembly import floats, starts
 from lumped.integration.compiled import Compiled, compiled
 from lumped.integration.record import Record
+from lumped.integration.signals import Signals
 from lumped.integration.simulate import Run, march
-from lumped.model.network import Link, Network
+from lumped.model.multipliers import multipliers
+from lumped.model.network import Link, Network, Source
 from lumped.numerics.heat_integrals import count
 from lumped.numerics.stages import Steps, stages, work
 from lumped.numerics.terms import END, ROW
+from lumped.transfer.laws import CONSTANT
+from lumped.transfer.terms_value import temperature_value
 
 # Radau's quadrature of order five over a step, which does not look at its start (Hairer and Wanner 1996, sec. IV.5)
 NODES = np.array([(4.0 - np.sqrt(6.0)) / 10.0, (4.0 + np.sqrt(6.0)) / 10.0, 1.0])
@@ -65,7 +67,7 @@ def balance(network: Network, record: Record, values: Mapping[str, float] | None
     return counted(network, core, run, walk(network, record, core, run))
 
 
-def counted(network: Network, core: Compiled, run: Run, way: Walk) -> Balance:
+def counted(network: Network, core: Compiled, run: Run, way: "Walk") -> Balance:
     """The balance of a run that was walked along; core with all terms."""
     mean = np.array(["#" not in s for s in network.states], float)
     assert run.z is not None
@@ -153,7 +155,11 @@ def _side(network: Network, link: Link) -> Array:
     if link.kind == "stream":
         return np.ones(n)
     for place, sign in zip(link.places, (1.0, -1.0), strict=True):
-        states = _states(network, place)
+        if place in network.places:
+            states = network.places[place].states
+            states = states[states < n]
+        else:
+            states = np.array([i for i, s in enumerate(network.states) if s == place], np.int64)
         if states.size:
             side = np.zeros(n)
             side[states] = sign
@@ -161,8 +167,44 @@ def _side(network: Network, link: Link) -> Array:
     return np.zeros(n)
 
 
-def _states(network: Network, place: str) -> Ints:
-    if place in network.places:
-        states = network.places[place].states
-        return states[states < len(network.states)]
-    return np.array([i for i, s in enumerate(network.states) if s == place], np.int64)
+@dataclass(frozen=True)
+class Audit:
+    """declared_J, injected_J : source -> heat over the record;  balance : where it went"""
+
+    declared_J: Mapping[str, float]
+    injected_J: Mapping[str, float]
+    balance: Balance
+
+    @property
+    def mismatch(self) -> float:
+        """Largest |injected - declared| of a source over the sum of all |declared|."""
+        scale = sum(abs(x) for x in self.declared_J.values()) or 1.0
+        return max((abs(self.injected_J[s] - x) / scale for s, x in self.declared_J.items()), default=0.0)
+
+    @property
+    def residual(self) -> float:
+        """Largest |in - out - stored| at any time over the largest of them."""
+        return float(np.abs(self.balance.residual).max())
+
+
+def audit(network: Network, record: Record, values: Mapping[str, float] | None = None) -> Audit:
+    """Declared: every loss law in NumPy, at the temperatures of a run and the inputs between its samples.
+
+    Injected: what the compiled terms put into the nodes. Both by the quadrature of `balance`.
+    """
+    core = compiled(network, record, values, all_terms=True)
+    run = march(network, record, core, keep_states=True)
+    way, m = walk(network, record, core, run), multipliers(network, values)
+    signals = record.inputs if isinstance(record.inputs, Signals) else Signals(record.inputs, run.time.size)
+    energies = {s.name: m.get(s.name, 1.0) * _heat(s, signals, way) for s in network.sources}
+    heat = counted(network, core, run, way)
+    return Audit(energies, {name: float(x[-1]) for name, x in heat.injected.items()}, heat)
+
+
+def _heat(source: Source, signals: Signals, way: Walk) -> float:
+    factor = signals.along(source.name, source.law, way.at)
+    law, over = source.law.temperature, np.ones(())
+    if law != CONSTANT:
+        probe = way.x[:, source.probe.index] @ source.probe.weights
+        over = np.array([temperature_value(law, float(T), 0.0) for T in probe])
+    return float(np.sum(way.weight * factor * over))

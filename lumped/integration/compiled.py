@@ -1,7 +1,5 @@
 """From a Network, a set of values and the inputs of a record to the flat arrays of the kernel."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
@@ -44,7 +42,7 @@ class Precision(NamedTuple):
     merged: float = 0.0
 
     @property
-    def finer(self) -> Precision:
+    def finer(self) -> "Precision":
         """What tells the error of this one."""
         return Precision(self.error_K / FINER, self.error_share / FINER, self.every_sample, self.missed * SHARE)
 

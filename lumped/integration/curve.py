@@ -1,7 +1,5 @@
 """How an input factor runs between the samples, where the inputs are linear: as parabolas, as many as it needs."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterator, Mapping
 from typing import NamedTuple
 
@@ -120,18 +118,13 @@ def curve(
 
     if skip is not None:
         near = near[~skip[near + 1]]
+    left, small, inserted = near.astype(float), SMALL * limits[3], NONE
     with within_silence():  # what is out of range was said of the samples
-        inserted = _cut(again, near.astype(float), turns, SMALL * limits[3], share)
+        if left.size:
+            five = again((left[:, None] + QUARTERS).ravel()).reshape(-1, QUARTERS.size)
+            wrong = left[_too_curved(five, 1.0, small, share)]
+            inserted = _inserted(again, wrong, turns, small, share) if wrong.size else NONE
     return Curve(every[:nt], bulge, inserted)
-
-
-def _cut(factor: Callable[[Array], Array], left: Array, turns: Array, small: float, share: float) -> Array:
-    """Positions that cut those of some intervals in which a parabola misses too much."""
-    if left.size == 0:
-        return NONE
-    five = factor((left[:, None] + QUARTERS).ravel()).reshape(-1, QUARTERS.size)
-    wrong = left[_too_curved(five, 1.0, small, share)]
-    return _inserted(factor, wrong, turns, small, share) if wrong.size else NONE
 
 
 def _too_curved(five: Array, width: Array | float, small: float, share: float) -> Mask:

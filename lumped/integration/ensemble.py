@@ -5,8 +5,6 @@ with dask_cluster("tcp://10.0.0.5:8786") as executor:
     y = ensemble(network, record, members, rows, executor)
 """
 
-from __future__ import annotations
-
 import os
 from collections.abc import Iterator, Mapping, Sequence
 from concurrent.futures import Executor, ThreadPoolExecutor

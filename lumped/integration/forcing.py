@@ -1,7 +1,5 @@
 """What drives a network over a record, from knot to knot: the samples, and where input factors turn between them."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 
 import numpy as np

@@ -4,8 +4,6 @@ Heat is kept, so that a node whose time constant is long against an interval fee
 far from a parabola (a switch), the interval is cut at the record's own samples.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -30,7 +28,7 @@ class Grid:
     full: Mask
 
     @classmethod
-    def of(cls, time: Array, fine_time: Array) -> Grid:
+    def of(cls, time: Array, fine_time: Array) -> "Grid":
         """Knots over finer samples."""
         first, last = np.searchsorted(fine_time, time, "right"), np.searchsorted(fine_time, time, "left")
         return cls(time, fine_time, np.append(False, last[1:] > first[:-1]))

@@ -1,7 +1,5 @@
 """Whether the films of a run stayed where they are known: what went beyond is said with its value and range."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -42,7 +40,7 @@ INSIDE = Furthest(-1, 1.0, 0.0, 0.0)
 class Reach:
     """What the tables of some terms, and the correlations behind them, have seen that lies furthest out."""
 
-    def __init__(self, core: Compiled) -> None:
+    def __init__(self, core: "Compiled") -> None:
         self.core, self.terms = core, core.terms
         spans, domains = dict[Any, int](), dict[Any, int]()
         for e in np.flatnonzero(self.terms.m != 0.0)[::-1].tolist():
@@ -142,7 +140,7 @@ class Reach:
             out_of_range(f"{names[e]}: {table.left(size, degC, 1.0 if self._alone(e) else 0.5)}")
 
 
-def tell_reach(core: Compiled, z: Array) -> None:
+def tell_reach(core: "Compiled", z: Array) -> None:
     """What a network at rest left, at its temperatures z (n + nb,)."""
     reach = Reach(core)
     reach.see(z[None, :], core.forcing, np.zeros(1, np.int64))

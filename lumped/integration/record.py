@@ -1,7 +1,5 @@
 """The record a network runs over."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 

@@ -134,18 +134,15 @@ class Signals(dict[str, Array]):
         curve = self._known.get(id(law))
         if curve is not None and curve[0]() is law:
             return curve[1]
-        new = self._equal_curve(law) or self._curve_of(name, law)
+        new: Curve | None = None
+        with suppress(TypeError):  # that of an equal law, as fits make them anew; one that holds arrays has no hash
+            new = self._equal.get(law)
+        new = new or self._curve_of(name, law)
         if self.nt <= LONG or (law.looks_at_all and not law.by_instant):
             self._known[id(law)] = ref(law, _forgetting(self, id(law))), new
             with suppress(TypeError):
                 self._equal.setdefault(law, new)
         return new
-
-    def _equal_curve(self, law: Law) -> Curve | None:
-        """That of an equal law, as fits make them anew; None of one that holds arrays, which has no hash."""
-        with suppress(TypeError):
-            return self._equal.get(law)
-        return None
 
     def driven(
         self, how: Hashable, curves: Sequence[Curve], work: Callable[[], tuple[Forcing, Array]]

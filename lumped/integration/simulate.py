@@ -3,8 +3,6 @@
 run = simulate(network, Record(time, inputs, boundaries, initial), values, rows, tangents)
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
@@ -17,9 +15,9 @@ from geom.errors import InputError, NoSolution
 from geom.table import Table, TableResult
 from geom.text import counted
 from lumped.integration.compiled import RUN, Compiled, Precision, compiled, hidden_states, reordered
-from lumped.integration.failure import failure
 from lumped.integration.reach import Reach
 from lumped.integration.record import Record, instants
+from lumped.integration.runaway import failure
 from lumped.model.network import Network, Parameter, Row
 from lumped.numerics import kernel
 from lumped.numerics.dense import factored
@@ -61,7 +59,7 @@ class Run(TableResult):
     end: Stand
     steps: Steps
     path: Array | None = None
-    finer: Callable[[], Run] = None  # type: ignore[assignment]
+    finer: "Callable[[], Run]" = None  # type: ignore[assignment]
 
     @property  # one that is cached has, before Python 3.12, one lock for all runs: threads would wait for each other
     def time_error_K(self) -> Array:
@@ -160,8 +158,10 @@ def march(
     """
     course = _Course(network, record, core, keep_states, begin, steps, portion)
     course.path = [] if keep_path else None
-    for part in _parts(core.forcing.time, core.C):
-        course.over(part, part.start > 0 or begin is None)
+    time = core.forcing.time  # cut at its jumps, if any state has no capacity: there such states find a new balance
+    jumps = np.flatnonzero(np.diff(time, prepend=-np.inf) == 0.0) if np.any(core.C == 0.0) else np.empty(0, int)
+    for a, b in pairwise([0, *jumps, time.size]):
+        course.over(slice(a, b), a > 0 or begin is None)
     return course.run()
 
 
@@ -300,9 +300,3 @@ def _trace(ns: int, core: Compiled, nb: int, moves: bool) -> kernel.Trace:
         factored(slots, core.structure),
         np.zeros((slots, n, nb)),
     )
-
-
-def _parts(time: Array, C: Array) -> list[slice]:
-    """The record between its jumps, if any state has no capacity: there such states start from a new balance."""
-    jumps = np.flatnonzero(np.diff(time, prepend=-np.inf) == 0.0) if np.any(C == 0.0) else np.empty(0, int)
-    return [slice(a, b) for a, b in pairwise([0, *jumps, time.size])]

@@ -1,7 +1,5 @@
 """Where a network comes to rest under constant inputs, with exact tangents."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 

@@ -8,8 +8,6 @@ cost: the dynamic pressure of its turning, as it comes in relative to the duct, 
 more nor less.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass

@@ -4,8 +4,6 @@ The input "on_NAME" is 1 while the machine stands on that base. Then its foot co
 the machine meets the surroundings as the face around it does.
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
@@ -14,7 +12,7 @@ import numpy as np
 from geom.description.bases import PIECES, THIS_MACHINE
 from geom.description.machine import Machine
 from geom.description.roles import Role
-from lumped.model.network import Link, Network, Parameter, Place
+from lumped.model.network import Link, Network, Place
 from lumped.transfer.laws import Array, Inputs, Wrapped
 
 
@@ -80,7 +78,9 @@ def _coupled(network: Network, switch: str, foot: str) -> Network:
     films = [x for x in network.links if x.name.startswith(f"film:{body}.outer") and x.places[1] == "ambient"]
     bare = [_bare(larger, film, print_, switch) for film in films]
     copies = {film.name: link.name for film, link in zip(films, bare, strict=True)}
-    parameters = tuple(_also(p, copies) for p in network.parameters)
+    # What acts on a film acts on its share of the footprint too.
+    more = [(p, [(copies[of], exponent) for of, exponent in p.targets if of in copies]) for p in network.parameters]
+    parameters = tuple(replace(p, targets=(*p.targets, *shares)) for p, shares in more)
     return replace(larger.extended(bare), parameters=parameters)
 
 
@@ -88,9 +88,3 @@ def _bare(network: Network, film: Link, face: Place, switch: str) -> Link:
     """The film of the face around it on the footprint while no foot is there."""
     name = film.name.replace(film.places[0], face.name)
     return network.surface_link(name, "contact", face.name, "ambient", Switched(film.law, switch, False))
-
-
-def _also(parameter: Parameter, copies: Mapping[str, str]) -> Parameter:
-    """What acts on a film acts on its share of the footprint too."""
-    more = tuple((copies[target], exponent) for target, exponent in parameter.targets if target in copies)
-    return replace(parameter, targets=(*parameter.targets, *more))

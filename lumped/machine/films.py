@@ -1,7 +1,5 @@
 """Which film washes which face of a motor, as coefficient laws by mechanism."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from functools import cached_property, partial

@@ -1,7 +1,5 @@
 """A hairpin winding in the network: the contacts that its insulation is, and its copper loss part by part."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from typing import Any
 

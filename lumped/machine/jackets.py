@@ -5,8 +5,6 @@ is another's outlet is fed by it, all others share the flow of the inlet, bounda
 row of cells, see path.py.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass, replace

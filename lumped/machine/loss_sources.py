@@ -5,8 +5,6 @@ shares over parts, loss zones or mean places that sum to 1, and the keys of the 
 resolve stands for its part. Series-wound machines may give plain numbers instead, see settings.Losses.
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 
 import numpy as np
@@ -75,8 +73,11 @@ def _declared(machine: Machine) -> list[Loss]:
         losses = read(Losses, section, f"{machine.name} [losses]")
         rated = Table(machine.sections.get("ratings", {}), f"{machine.name} [ratings]")
         return _series(machine, losses, {key: rated.number(key) for key in ("current_A", "speed_rpm")})
-    if not section:
-        return [(ASSUMED.partition(":")[2], "constant", _everywhere(machine), PowerLoss(((ASSUMED_W, ()),)), "")]
+    if not section:  # in windings by volume, or, where nothing is wound, in all parts
+        heated = [part for part in machine.parts if conducts(machine, part.name)] or list(machine.parts)
+        total = sum(part.volume for part in heated)
+        shares = {part.name: part.volume / total for part in heated}
+        return [(ASSUMED.partition(":")[2], "constant", shares, PowerLoss(((ASSUMED_W, ()),)), "")]
     where = f"{machine.name} [losses"
     tables = {name: Table(data, f"{where}.{declared_name(name)}]") for name, data in by_part(machine, section).items()}
     laws = loss_laws(tables)
@@ -84,13 +85,6 @@ def _declared(machine: Machine) -> list[Loss]:
     for table in tables.values():
         table.close()
     return out
-
-
-def _everywhere(machine: Machine) -> Shares:
-    """Windings by volume, or, where nothing is wound, all parts."""
-    heated = [part for part in machine.parts if conducts(machine, part.name)] or list(machine.parts)
-    total = sum(part.volume for part in heated)
-    return {part.name: part.volume / total for part in heated}
 
 
 def _read(name: str, table: Table, law: Law) -> Loss:

@@ -20,15 +20,12 @@ What comes out, for every family and for imported machines alike (the machine fi
                 "coolant.flow", "oil.flow", "h.oil", and "k.GROUP" for conductivities declared in [calibration]
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Mapping
 from dataclasses import replace
 
 import numpy as np
 
 from geom.description.machine import Machine
-from geom.description.part import Part
 from lumped.machine.air import fan_streams
 from lumped.machine.bases import switched
 from lumped.machine.films import Surroundings, face_films, nominal, surroundings
@@ -36,7 +33,7 @@ from lumped.machine.hairpin import insulation
 from lumped.machine.jackets import FLOW, INLET, coolant_streams, outlet_film, outlets
 from lumped.machine.loss_sources import loss_inputs, sources
 from lumped.machine.parameters import parameters
-from lumped.machine.part_identities import declared, with_channels
+from lumped.machine.part_identities import declared
 from lumped.machine.path import cells_of, stem
 from lumped.machine.settings import contact_coefficients
 from lumped.machine.sprays import OIL_FLOW, RAIL
@@ -80,14 +77,13 @@ def fluids(machine: Machine) -> dict[str, float]:
     """Fluid nodes and their heat capacities (J/K)."""
     out: dict[str, float] = {}
     for part in machine.fluids:
-        out |= {part.name: AIR_IN_SPACE} if part.material == "air" else _cells(machine, part)
+        if part.material == "air":
+            out[part.name] = AIR_IN_SPACE
+        else:
+            liquid = surroundings(machine, ()).cooling.liquid  # type: ignore[union-attr]
+            names = cells_of(machine, part.name)
+            out |= dict.fromkeys(names, liquid.rho * liquid.cp * part.volume / len(names))
     return out
-
-
-def _cells(machine: Machine, jacket: Part) -> dict[str, float]:
-    liquid = surroundings(machine, ()).cooling.liquid  # type: ignore[union-attr]
-    names = cells_of(machine, jacket.name)
-    return dict.fromkeys(names, liquid.rho * liquid.cp * jacket.volume / len(names))
 
 
 def boundaries(machine: Machine) -> tuple[str, ...]:
@@ -138,7 +134,10 @@ def motor_network(machine: Machine, condensed: Network) -> Network:
     around = surroundings(machine, contacts)
     ports = {} if around.cooling is None else outlets(machine, condensed, around.cooling)
     network = replace(condensed, places={**condensed.places, **ports, **means(machine, condensed)})
-    network = replace(with_channels(network), declared=declared(machine, network, around.contacts))
+    fluids_there = {n: p for n, p in network.places.items() if p.kind == "fluid" and stem(n) != n}
+    cells = {n: replace(p, channel=stem(n)) for n, p in fluids_there.items()}  # each says which jacket it belongs to
+    network = replace(network, places={**network.places, **cells})
+    network = replace(network, declared=declared(machine, network, around.contacts))
     faces = [place for place in network.places.values() if place.kind == "surface" and place.fluid]
     films = [link for face in faces for link in _film_links(network, face, around)]
     streams = [] if around.ways is None else fan_streams(network, machine.features, around.ways)

@@ -4,8 +4,6 @@
 fan = { h_W_m2K = 40, at_rpm = 1460 } }; the part's own fan stands in the place of what [fans.cowl] gives it.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import lru_cache
@@ -20,12 +18,12 @@ from lumped.correlations.info import Info
 from lumped.correlations.natural import churchill_chu_cylinder, churchill_chu_plate, mcadams_plate
 from lumped.correlations.streams import streamed
 from lumped.correlations.tabulate import film_tabulated
+from lumped.declarations.films import shaft_fan
 from lumped.machine.settings import Films
 from lumped.machine.shapes import Extent, extent, fins_of
 from lumped.schemas.reader import Table
 from lumped.transfer.laws import FILMS, FilmTable, Fixed, InputPower, Law, Radiation
 from lumped.transfer.properties import Fluid, air
-from lumped.transfer.shaft_fan import shaft_fan
 from lumped.transfer.streamed import Streamed
 
 SURFACES = ("horizontal cylinder", "vertical plate", "horizontal plate", "radial fins")
@@ -92,7 +90,11 @@ def outer_films(machine: Machine, part: str, films: Films) -> dict[str, Law]:
     natural, radiation = Fixed(outer.factor, still_air(outer)), Fixed(outer.emissivity * outer.view, Radiation())
     laws: dict[str, Law] = {"natural": natural, "radiation": radiation}
     blown = _fan(outer.fan) if outer.fan is not None else None if cowl is None else _blown(machine, part, cowl)
-    return laws if blown is None else {**laws, "blown": _excess(blown, outer)}
+    if blown is not None:  # what the fan's air adds to still air: both are one film
+        still = still_air(outer)
+        still = replace(still, value=tuple(outer.factor * h for h in still.value))
+        laws["blown"] = replace(blown, table=replace(blown.table, still=still))
+    return laws
 
 
 def outer_of(machine: Machine, part: str, films: Films) -> Outer:
@@ -105,18 +107,13 @@ def outer_of(machine: Machine, part: str, films: Films) -> Outer:
     surface = t.word("surface", usual.surface, SURFACES)
     size = t.number("size_mm") / 1e3 if "size_mm" in t or surface != usual.surface else usual.size
     radiates = (t.number("emissivity", usual.emissivity), t.number("view", usual.view))
-    outer = Outer(surface, size, *radiates, t.number("factor", usual.factor), usual.spacing, _fan_law(t))
+    outer = Outer(surface, size, *radiates, t.number("factor", usual.factor), usual.spacing)
+    if "fan" in t:
+        inner = Table(t.raw("fan"), f"{t.where} fan")
+        outer = replace(outer, fan=shaft_fan(inner))
+        inner.close()
     t.close()
     return outer
-
-
-def _fan_law(table: Table) -> InputPower | None:
-    if "fan" not in table:
-        return None
-    inner = Table(table.raw("fan"), f"{table.where} fan")
-    law = shaft_fan(inner)
-    inner.close()
-    return law
 
 
 def _usual(machine: Machine, part: str, films: Films) -> Outer:
@@ -171,15 +168,11 @@ def _blown(machine: Machine, part: str, cowl: Cowl) -> Streamed | None:
     if machine.part(part).role is Role.FAN:
         return _of_speed(cowl, 1.0, lambda v, air: flat_plate(v, 0.5 * e.size[1], air))
     if e.turned and e.size[2] < END_SHIELD * e.size[1]:
-        share = cowl.rear_share if _on_left(machine, e) is (cowl.rear == "left") else cowl.front_share
+        spans = [part.span for part in machine.parts if part.role in (Role.END_SHIELD, Role.HOUSING)] or [(e.z0, e.z1)]
+        on_left = e.z0 + e.z1 < min(a for a, _ in spans) + max(b for _, b in spans)  # of the body's middle
+        share = cowl.rear_share if on_left is (cowl.rear == "left") else cowl.front_share
         return _of_speed(cowl, share, lambda v, air: flat_plate(v, e.size[1], air))
     return None
-
-
-def _on_left(machine: Machine, e: Extent) -> bool:
-    """Does it lie before the middle of the machine's body along the axis?"""
-    spans = [part.span for part in machine.parts if part.role in (Role.END_SHIELD, Role.HOUSING)] or [(e.z0, e.z1)]
-    return e.z0 + e.z1 < min(a for a, _ in spans) + max(b for _, b in spans)
 
 
 def _of_speed(cowl: Cowl, share: float, film: Callable[[float, Fluid], tuple[float, Info]]) -> Streamed:
@@ -192,10 +185,3 @@ def _fan(law: InputPower) -> Streamed:
     """The declared film of a part's own fan."""
     ((of, at, exponent),), info = law.terms, Info("fan", "declared", {}, {})
     return streamed(of, at, lambda n, _: (law.value * abs(n / at) ** exponent, info), air, BLOWN_C, liquid=False)
-
-
-def _excess(blown: Streamed, outer: Outer) -> Streamed:
-    """What the fan's air adds to still air: both are one film, (h_blown^3 + h_still^3)^(1/3)."""
-    still = still_air(outer)
-    still = replace(still, value=tuple(outer.factor * h for h in still.value))
-    return replace(blown, table=replace(blown.table, still=still))

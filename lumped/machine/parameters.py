@@ -1,7 +1,5 @@
 """What calibration may move in a motor's network, each with its prior."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
@@ -56,16 +54,14 @@ def parameters(
             groups.setdefault("oil" if link.name.endswith(SPRAY) else group, []).append((link.name, 1.0))
     film = Parameter("", (), prior_sd=0.3, low=0.1, high=10.0, source="spread of film correlations")
     heat = [replace(film, name=f"h.{group}", targets=tuple(acts)) for group, acts in groups.items() if acts]
-    heat += [*_contacts(network), *_losses(losses), _capacity(network)]
-    return [*heat, *out, *_conductivities(machine, network)]
-
-
-def _contacts(network: Network) -> list[Parameter]:
-    words, out = "spread of published contact gaps", []
-    for name in (link.name for link in network.links if link.kind == "contact"):
-        short = name.replace(":", ".", 1)
-        out.append(Parameter(short, ((name, 1.0),), prior_sd=0.3, low=0.02, high=50.0, source=words))
-    return out
+    joint = Parameter("", (), prior_sd=0.3, low=0.02, high=50.0, source="spread of published contact gaps")
+    contacts = [x.name for x in network.links if x.kind == "contact"]
+    heat += [replace(joint, name=name.replace(":", ".", 1), targets=((name, 1.0),)) for name in contacts]
+    whole = tuple((f"capacity:{group}", 1.0) for group in dict.fromkeys(network.capacity_group) if group)
+    of_machine = Parameter(
+        "capacity.machine", whole, prior_sd=0.05, low=0.5, high=2.0, source="alloys and fill factors"
+    )
+    return [*heat, *_losses(losses), of_machine, *out, *_conductivities(machine, network)]
 
 
 def _losses(losses: Sequence[Source]) -> list[Parameter]:
@@ -76,11 +72,6 @@ def _losses(losses: Sequence[Source]) -> list[Parameter]:
         words = "spread of published loss formulas"
         out.append(Parameter(name, acts, prior_sd=spread, low=0.1, high=10.0, source=words))
     return out
-
-
-def _capacity(network: Network) -> Parameter:
-    acts = tuple((f"capacity:{group}", 1.0) for group in dict.fromkeys(network.capacity_group) if group)
-    return Parameter("capacity.machine", acts, prior_sd=0.05, low=0.5, high=2.0, source="alloys and fill factors")
 
 
 def _conductivities(machine: Machine, network: Network) -> list[Parameter]:

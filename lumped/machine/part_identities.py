@@ -1,7 +1,5 @@
 """What the parts, fluids and boundaries of a motor are: as declared, else by what they are made of."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable
 from dataclasses import replace
 
@@ -73,9 +71,3 @@ def _by_material(machine: Machine, part: Part) -> Identity:
 def turning(machine: Machine, contacts: Iterable[str]) -> frozenset[str]:
     """Parts that turn."""
     return frozenset(name for name, i in part_identities(machine, contacts).items() if i.turns)
-
-
-def with_channels(network: Network) -> Network:
-    """The network in which every cell of a jacket says which jacket it belongs to."""
-    cells = {name: place for name, place in network.places.items() if place.kind == "fluid" and stem(name) != name}
-    return replace(network, places={**network.places, **{n: replace(p, channel=stem(n)) for n, p in cells.items()}})

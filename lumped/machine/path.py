@@ -4,8 +4,6 @@ A cell's node is the temperature at which the liquid leaves it, and its film, h 
 such that walls of one temperature warm the liquid by the exact exponential (fem.solvers.streams has the same cells).
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import dataclass
 

@@ -1,8 +1,5 @@
 """The thermal sections of a machine file, read into frozen settings: [contacts], [films], [losses], [fans]."""
 
-from __future__ import annotations
-
-import difflib
 from collections.abc import Mapping
 from dataclasses import dataclass, fields
 from typing import Any, TypeVar
@@ -12,7 +9,7 @@ from geom.description.machine import Machine
 from geom.errors import InputError
 from lumped.correlations.end_space import SCHUBERT
 from lumped.schemas.bounds import bounds
-from lumped.schemas.reader import Table, excerpt
+from lumped.schemas.reader import Table, excerpt, suggestion
 
 K_AIR = 0.026  # W/m/K, still air in a contact gap near 30 degC
 
@@ -92,9 +89,7 @@ def contact_coefficients(table: Mapping[str, Any], names: list[str], where: str)
     """
     for key in table:
         if key != "default" and key not in names:
-            near = difflib.get_close_matches(key, names, n=1)
-            hint = f"did you mean '{near[0]}'? " if near else ""
-            raise InputError(f"no contact '{key}'", where, f"{hint}this machine has: {', '.join(names)}")
+            raise InputError(f"no contact '{key}'", where, suggestion(key, names, "this machine has"))
     default = {"gap_mm": 0.01}
     return {name: _coefficient(table.get(name, table.get("default", default)), f"{where} '{name}'") for name in names}
 

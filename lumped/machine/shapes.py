@@ -1,7 +1,5 @@
 """What the correlations need to know of a machine's parts: which of them turn, how large they are, how they stand."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterable
 from dataclasses import dataclass

@@ -5,8 +5,6 @@ for every part under nozzles. The inlet is boundary "oil", the flow the input "o
 The end space is what the oil leaves as: its node is as warm as the oil that runs off.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
@@ -14,7 +12,7 @@ from dataclasses import dataclass, replace
 from geom.constants import L_MIN
 from geom.description.machine import Machine
 from geom.description.roles import Role
-from lumped.circuits.passages import Nozzles
+from lumped.circuits.hydraulics import Nozzles
 from lumped.correlations.info import Info
 from lumped.correlations.streams import restretched, streamed, warmed
 from lumped.declarations.films import read_coolant

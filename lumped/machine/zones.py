@@ -1,14 +1,12 @@
 """Loss zones of a motor: teeth and back of a slotted core, halves of a slot, shoe and body of a pole, field coils."""
 
-from __future__ import annotations
-
-from collections.abc import Callable
+from functools import partial
 
 import numpy as np
 
 from geom.description.machine import Machine
 from geom.description.part import Part
-from lumped.condensation.zone import Zone
+from lumped.condensation.condensed import Zone
 from lumped.machine.shapes import laminated, radius, wound
 from lumped.model.network import Array
 
@@ -51,15 +49,12 @@ def _teeth(machine: Machine, low: float, high: float) -> dict[str, Zone]:
 def _coils(machine: Machine) -> dict[str, Zone]:
     """One coil per pole."""
     axes = [(name, np.array(coils.axes)) for name, coils in machine.features.coils.items()]
-    return {f"{name}.{k + 1}": Zone(name, _nearest(at, k)) for name, at in axes for k in range(len(at))}
+    return {f"{name}.{k + 1}": Zone(name, partial(_nearest, at, k)) for name, at in axes for k in range(len(at))}
 
 
-def _nearest(axes: Array, k: int) -> Callable[[Array], Array]:
-    def inside(x: Array) -> Array:
-        off = np.abs(np.angle(np.exp(1j * (np.arctan2(x[:, 1], x[:, 0])[:, None] - axes))))
-        return (np.argmin(off, axis=1) == k).astype(float)
-
-    return inside
+def _nearest(axes: Array, k: int, x: Array) -> Array:
+    off = np.abs(np.angle(np.exp(1j * (np.arctan2(x[:, 1], x[:, 0])[:, None] - axes))))
+    return (np.argmin(off, axis=1) == k).astype(float)
 
 
 def _split(part: str, at: float, inner: str, outer: str) -> dict[str, Zone]:

@@ -1,7 +1,5 @@
 """Networks by hand: nodes, links between them, streams and sources as plain functions."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 
 import numpy as np

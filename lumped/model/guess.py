@@ -1,7 +1,5 @@
 """A guess at what the nodes of a network are, from topology and losses alone; what is declared stands."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from typing import TYPE_CHECKING
 
@@ -17,7 +15,7 @@ Evidence = tuple[Role, str]
 MUCH = 3.0  # a boundary that takes more than this times what the surroundings take is a coolant
 
 
-def identities(network: Structure) -> Mapping[str, Identity]:
+def identities(network: "Structure") -> Mapping[str, Identity]:
     """Name of a part, node, fluid or boundary -> what it is, with the evidence where it is a guess."""
     top = Topology(network)
     names = (*top.bodies, *top.fluids, *network.boundaries)

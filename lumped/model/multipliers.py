@@ -1,7 +1,5 @@
 """What the parameters do: multipliers on links, sources and capacity groups, and their derivatives."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from math import prod
 
@@ -35,16 +33,6 @@ def parameter_values(network: Network, values: Mapping[str, float]) -> dict[str,
     return {p.name: float(values.get(p.name, p.value)) for p in network.parameters}
 
 
-def _targets(network: Network, parameter: Parameter, valid: set[str]) -> list[tuple[str, float]]:
-    thermal = [(t, e) for t, e in parameter.targets if not t.startswith(CHANNEL_OPERATORS)]
-    for target, _ in thermal:
-        if target not in valid:
-            what = f"target '{target}' is not a link, source or capacity group"
-            where = f"parameter '{parameter.name}' of {network.title}"
-            raise InputError(what, where, f"known: {', '.join(sorted(valid))}")
-    return thermal
-
-
 @once
 def _acting(network: Network) -> dict[str, list[tuple[str, float]]]:
     """Target -> what acts on it: (parameter, exponent)."""
@@ -52,18 +40,20 @@ def _acting(network: Network) -> dict[str, list[tuple[str, float]]]:
     targets = {link.name for link in network.links} | {source.name for source in network.sources} | groups
     out: dict[str, list[tuple[str, float]]] = {}
     for p in network.parameters:
-        for target, exponent in _targets(network, p, targets):
-            out.setdefault(target, []).append((p.name, exponent))
+        for t, exponent in p.targets:
+            if t.startswith(CHANNEL_OPERATORS):
+                continue
+            if t not in targets:
+                what, where = f"target '{t}' is not a link, source or capacity group", f"parameter '{p.name}'"
+                raise InputError(what, f"{where} of {network.title}", f"known: {', '.join(sorted(targets))}")
+            out.setdefault(t, []).append((p.name, exponent))
     return out
-
-
-def _factors(network: Network, now: Mapping[str, float]) -> dict[str, float]:
-    return {p.name: factor(p, now[p.name])[0] for p in network.parameters}
 
 
 def multipliers(network: Network, values: Mapping[str, float] | None = None) -> dict[str, float]:
     """Target name -> multiplier, for every target that some parameter acts on."""
-    f = _factors(network, values_of(network, values))
+    now = values_of(network, values)
+    f = {p.name: factor(p, now[p.name])[0] for p in network.parameters}
     return {target: prod(f[name] ** exponent for name, exponent in on) for target, on in _acting(network).items()}
 
 
@@ -74,7 +64,8 @@ def slopes(
     if not parameters:
         return []
     now = values_of(network, values)
-    acting, f, by_name = _acting(network), _factors(network, now), {p.name: p for p in network.parameters}
+    acting, by_name = _acting(network), {p.name: p for p in network.parameters}
+    f = {name: factor(p, now[name])[0] for name, p in by_name.items()}
     out = []
     for parameter in parameters:
         if parameter.name not in by_name:

@@ -11,8 +11,6 @@ parameter does). Every coefficient g and q factorises into an input factor, eval
 whole record, times one temperature law (see laws.py).
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
@@ -98,7 +96,7 @@ class Network(Structure, TableResult):
 
     def extended(
         self, links: Iterable[Link] = (), sources: Iterable[Source] = (), parameters: Iterable[Parameter] = ()
-    ) -> Network:
+    ) -> "Network":
         """The same network with more physics; nothing already there changes."""
         every = (*self.parameters, *parameters)
         return replace(self, links=(*self.links, *links), sources=(*self.sources, *sources), parameters=every)

@@ -1,7 +1,5 @@
 """What follows from an object alone is worked out once, as long as the object lives."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from functools import wraps
 from typing import TypeVar

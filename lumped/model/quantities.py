@@ -1,7 +1,5 @@
 """What an input measures, and the input that a column of each quantity feeds where its sheet names none."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 
 INPUTS: Mapping[str, str] = {

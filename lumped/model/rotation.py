@@ -1,7 +1,5 @@
 """Which bodies turn, from how they hang together: what a bearing or an air gap holds apart from what stands."""
 
-from __future__ import annotations
-
 from collections.abc import Collection, Mapping
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Where on a network things can sit, by what its parts, fluids and boundaries are: see `Network.identities`."""
 
-from __future__ import annotations
-
 from collections.abc import Collection, Iterable, Iterator
 
 from geom.description.roles import Identity, Role

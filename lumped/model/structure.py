@@ -1,7 +1,5 @@
 """What a network is made of: rows, places, links, sources and parameters, and all of them together."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Literal, Protocol

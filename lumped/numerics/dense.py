@@ -5,8 +5,6 @@ Rows and columns are taken in groups, the last filled up with the identity: shap
 neighbours, and what a group of rows takes out of another is sixteen products for every column that is read.
 """
 
-from __future__ import annotations
-
 from functools import cache
 from typing import NamedTuple
 

@@ -1,7 +1,5 @@
 """Heat through the terms at given states, weighted and summed. It is compiled on its own."""
 
-from __future__ import annotations
-
 from lumped.numerics.jit import entry
 from lumped.numerics.stages import forced
 from lumped.numerics.terms import END, ROW, flow

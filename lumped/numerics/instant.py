@@ -1,7 +1,5 @@
 """One instant of a network: heat into every state and how it turns with temperature. It is compiled on its own."""
 
-from __future__ import annotations
-
 from lumped.numerics.jit import entry
 from lumped.numerics.terms import flow, jacobian
 

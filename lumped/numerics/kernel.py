@@ -11,8 +11,6 @@ Where all coefficients are positive a step must also keep the maximum principle:
 before, none warmer without a source that heats it. What only some runs need is compiled when first asked for.
 """
 
-from __future__ import annotations
-
 from typing import NamedTuple
 
 from lumped.numerics.dense import Factored, copy, lu, shifted, solve

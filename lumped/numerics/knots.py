@@ -1,7 +1,5 @@
 """Which knots of a record a run needs: those between which all that drives it is a parabola. Compiled on its own."""
 
-from __future__ import annotations
-
 from lumped.numerics.jit import entry, inner, inner_finite, pasted
 
 

@@ -12,8 +12,6 @@ states without capacity are met at the end of the step. Where it fails, implicit
 start (matrix K instead of G: an M-matrix) takes its place: U = (C + h K)^-1 h F(t1, x0), x1 = x0 + U.
 """
 
-from __future__ import annotations
-
 from typing import NamedTuple
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Rest: the states without heat capacity at their balance, the others as they are. It is compiled on its own."""
 
-from __future__ import annotations
-
 from lumped.numerics.dense import axpy, copy, fill, lu, solve, solve_many
 from lumped.numerics.jit import entry, inner, pasted
 from lumped.numerics.stages import finite

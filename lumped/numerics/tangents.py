@@ -4,8 +4,6 @@ They differentiate exactly the equations of stages.py, second derivatives of the
 steps that the kernel took: those are the same, whatever the multipliers.
 """
 
-from __future__ import annotations
-
 from typing import NamedTuple
 
 from lumped.numerics.dense import axpy, solve_many

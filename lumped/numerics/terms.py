@@ -4,8 +4,6 @@ Every link and source is a *term*: it takes m c(t, T) P z+ out of the states, z+
 pattern in the last column, with minus signs.
 """
 
-from __future__ import annotations
-
 import math
 from typing import NamedTuple
 

@@ -4,8 +4,6 @@ A key says its unit in its name, so most bounds are those of a unit. They are fa
 is a slip (a sign, a decimal point, a unit), never an unusual design.
 """
 
-from __future__ import annotations
-
 import csv
 import json
 import math

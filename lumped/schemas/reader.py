@@ -1,7 +1,5 @@
 """Tables of a TOML file read key by key: what is left over is an error that names the key and what would be right."""
 
-from __future__ import annotations
-
 import difflib
 from collections.abc import Iterable, Mapping
 from typing import Any
@@ -147,15 +145,15 @@ class Table:
         """All of the table as name -> number, each within the bounds of `of`."""
         return {name: self.number(name, of=of) for name in self.data}
 
-    def table(self, key: str) -> Table:
+    def table(self, key: str) -> "Table":
         return Table(self.raw(key, {}), f"{self.where}.{key}" if self.where.endswith("]") else f"{self.where} [{key}]")
 
-    def tables(self, key: str) -> dict[str, Table]:
+    def tables(self, key: str) -> "dict[str, Table]":
         """The named tables under a key: [key.NAME]."""
         whole = Table(self.raw(key, {}), f"{self.where} [{key}]")
         return {name: Table(data, f"{self.where} [{key}.{name}]") for name, data in whole.data.items()}
 
-    def listed(self, key: str) -> list[Table]:
+    def listed(self, key: str) -> "list[Table]":
         """A list of tables, or one table."""
         value = self.raw(key, [])
         items = [value] if isinstance(value, Mapping) else value

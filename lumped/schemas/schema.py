@@ -6,19 +6,15 @@ bounds of all numbers, and the families of machines have the keys of theirs.
 python -m lumped.schemas.schema FOLDER    writes the schemas, out/schemas where no folder is named
 """
 
-from __future__ import annotations
-
 import json
 import sys
 from collections.abc import Iterator, Mapping
 from functools import cache
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
+from geom.description.parameters import Parameter
 from lumped.schemas.bounds import bounds
-
-if TYPE_CHECKING:
-    from geom.description.parameters import Parameter
 
 FOLDER = Path(__file__).parent
 FILES = ("network", "case", "sheet", "model", "cycle", "bench", "machine")
@@ -147,16 +143,12 @@ def bounded(node: Any, key: str = "", table: str = "") -> Any:
     if "properties" in node:
         out["properties"] = {name: bounded(inner, name, key) for name, inner in node["properties"].items()}
     if "additionalProperties" in node:  # under names of the user's own: shares, constants, values
-        out["additionalProperties"] = bounded(node["additionalProperties"], *_owned(key, table))
+        out["additionalProperties"] = bounded(node["additionalProperties"], "shares" if key in COMMON else key, table)
     return {name: out[name] for name in node}
 
 
 INNER = ("properties", "additionalProperties")
 COMMON = ("at", "of", "wall", "winding", "magnet", "cage")  # tables of name -> share of one whole
-
-
-def _owned(key: str, table: str) -> tuple[str, str]:
-    return ("shares" if key in COMMON else key), table
 
 
 def write_schemas(folder: Path | str) -> list[Path]:

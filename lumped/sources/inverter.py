@@ -1,7 +1,5 @@
 """Losses that come with an inverter: its own, and what the ripple of its pulses makes in stator and rotor."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

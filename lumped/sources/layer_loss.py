@@ -1,7 +1,5 @@
 """What alternating current adds in one layer of bars: by Dowell's closed form, or from a map."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass

@@ -3,8 +3,6 @@
 What a law declares is what the network injects: the source's weights sum to 1 and nothing is clipped.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np
@@ -84,16 +82,13 @@ class EddyLoss(Law):
         f = np.abs(np.asarray(inputs[self.speed], float) / self.speed_at)
         out = np.asarray(np.polynomial.polynomial.polyval(f, self.ac), float)
         if np.any(out < 0.0):
-            raise self._negative(np.ravel(out), np.ravel(f))
+            worst, at = float(out.min()), np.ravel(f)[np.argmin(out)] * self.speed_at
+            raise InputError(
+                f"the resistance factor is {worst:.3g} at {self.speed} = {at:.4g}",
+                f"copper loss of {', '.join(self.copper.currents)}, ac coefficients {list(self.ac)}",
+                "coefficients that keep c0 + c1 f + c2 f^2 ... above 0: resistance makes heat",
+            )
         return self.copper.factor(inputs) * (out - 1.0)
-
-    def _negative(self, factor: Array, f: Array) -> InputError:
-        worst = int(np.argmin(factor))
-        return InputError(
-            f"the resistance factor is {factor[worst]:.3g} at {self.speed} = {f[worst] * self.speed_at:.4g}",
-            f"copper loss of {', '.join(self.copper.currents)}, ac coefficients {list(self.ac)}",
-            "coefficients that keep c0 + c1 f + c2 f^2 ... above 0: resistance makes heat",
-        )
 
 
 @dataclass(frozen=True)

@@ -1,7 +1,5 @@
 """Losses from a map over speed and torque."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

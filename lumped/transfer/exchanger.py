@@ -1,7 +1,5 @@
 """Heat exchangers by effectiveness and number of transfer units, as laws of a network."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import dataclass
 

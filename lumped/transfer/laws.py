@@ -4,8 +4,6 @@ The compiled kernel knows only the temperature laws below, so any correlation, w
 NumPy, runs at compiled speed.
 """
 
-from __future__ import annotations
-
 from abc import ABC, abstractmethod
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -87,7 +85,7 @@ class FilmTable(TemperatureLaw):
 
     difference: tuple[float, ...]
     value: tuple[float, ...]
-    domain: Domain | None = None
+    domain: "Domain | None" = None
 
     @property
     def films(self) -> tuple[float, float]:
@@ -146,7 +144,7 @@ class StreamTable(TemperatureLaw):
     stretch: float = 0.0
     still: FilmTable | None = None
     exponent: float = 3.0
-    domain: Domain | None = None
+    domain: "Domain | None" = None
 
     def level(self, inputs: Inputs) -> Array | float:
         return self.at(self.size(inputs), self.degC)

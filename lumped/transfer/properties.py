@@ -1,7 +1,5 @@
 """Properties of the fluids that cool motors, from kept libraries."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from functools import cache, lru_cache
 from math import ceil, floor

@@ -1,7 +1,5 @@
 """What lies outside the range of a source is said, once for each thread that is not told to be silent."""
 
-from __future__ import annotations
-
 import re
 import threading
 import warnings

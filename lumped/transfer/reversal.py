@@ -1,7 +1,5 @@
 """Flows that turn round: a stream as one law per direction, or refused where nothing says what comes in from behind."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np
@@ -29,13 +27,11 @@ class OneWay(Wrapped):
         flow = np.ravel(np.asarray(inputs[self.column], float))
         back = flow < -SLACK * max(self.usual, float(np.abs(flow).max(initial=0.0)))
         if np.any(back):
-            raise self._backwards(inputs, int(np.argmax(back)), flow)
+            at = int(np.argmax(back))
+            time = np.ravel(np.asarray(inputs[CLOCK], float)) if CLOCK in inputs else np.empty(0)
+            when = f"t = {time[at]:.6g} s" if at < time.size else f"sample {at + 1}"
+            raise InputError(f"the flow turns round: {self.column} = {flow[at]:.4g} at {when}", self.where, self.right)
         return self.base.factor(inputs)
-
-    def _backwards(self, inputs: Inputs, at: int, flow: Array) -> InputError:
-        time = np.ravel(np.asarray(inputs[CLOCK], float)) if CLOCK in inputs else np.empty(0)
-        when = f"t = {time[at]:.6g} s" if at < time.size else f"sample {at + 1}"
-        return InputError(f"the flow turns round: {self.column} = {flow[at]:.4g} at {when}", self.where, self.right)
 
 
 @dataclass(frozen=True)

@@ -1,7 +1,5 @@
 """A number times a film or share of a stream."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

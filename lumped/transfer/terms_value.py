@@ -1,7 +1,5 @@
 """Temperature laws in ordinary NumPy, for what looks at a network from outside the compiled kernel."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from geom.constants import SIGMA, ZERO_C

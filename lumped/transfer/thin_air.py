@@ -4,8 +4,6 @@ Conductivity, heat capacity and Prandtl number do not depend on pressure. So a f
 air of rho times the density what it was at rho v, one of still air at a rise of D what it was at rho^2 D.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Collection
 from dataclasses import dataclass, replace

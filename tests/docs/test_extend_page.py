@@ -18,7 +18,7 @@ FAMILY = (
     HOUSE
     + """
 from geom.machine_file import machine_from
-from lumped.integration.audit import audit
+from lumped.integration.balance import audit
 from lumped.integration.simulate import Record, simulate
 from lumped.model.sites import ASSUMED_W
 from lumped.build.pipeline import build

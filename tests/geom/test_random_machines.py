@@ -10,8 +10,7 @@ from hypothesis import HealthCheck, assume, given, settings, strategies as st
 from geom import InputError, check_cad
 from geom.description.profile import ArcGrid
 from geom.machine_file import families, machine_from
-from geom.meshing.partition import partition
-from geom.meshing.voids import filled
+from geom.meshing.partition import filled, partition
 
 # few slots and fins: a machine with 9 slots goes wrong in the same ways as one with 90, ten times as fast
 FEW = {

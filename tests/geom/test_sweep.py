@@ -14,8 +14,7 @@ from geom.description.reading import read_geometry, usual_geometry
 from geom.families.proportions import remedy
 from geom.families.random_geometry import random_geometry
 from geom.machine_file import families, machine_from
-from geom.meshing.partition import partition
-from geom.meshing.voids import filled
+from geom.meshing.partition import filled, partition
 
 ROOT = {"series-dc": "rotor", "pmsm": "stator", "tefc": "stator", "cross-section": "stator"}
 

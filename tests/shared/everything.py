@@ -9,8 +9,8 @@ from playground import SENSORS, network, row, stand
 from lumped.correlations.oil import sprayed_face
 from lumped.correlations.streams import streamed
 from lumped.model.network import NOTHING, Link, Place, Row
+from lumped.transfer.coolant import ATF
 from lumped.transfer.laws import Fixed
-from lumped.transfer.oils import ATF
 from measured.case import Channel, Test
 from validation.effects import Scene
 

@@ -3,7 +3,8 @@
 The axis is z, the shaft extension is on the right (high z), the base lies at -y.
 """
 
-from __future__ import annotations
+from collections.abc import Callable
+from functools import partial
 
 from geom.description import shapes
 from geom.description.geometry import Geometry
@@ -18,25 +19,16 @@ from geom.families.radial_flux.rotors import cage_rotor, magnet_rotor, shaft
 from geom.families.radial_flux.stator import stator
 from geom.families.shaft_fan import shaft_fan
 
+Rotor = Callable[[Geometry, Layout], tuple[Part, ...]]
 
-def build_pmsm(g: Geometry) -> tuple[Part, ...]:
-    """Solids and fluids of a machine with interior magnets. Raises InputError for parts that do not fit."""
+
+def _build(check_rotor: Callable[[Geometry, Layout], None], rotor: Rotor, g: Geometry) -> tuple[Part, ...]:
+    """Solids and fluids of a machine with such a rotor. Raises InputError for parts that do not fit."""
     at = Layout(g)
     check(g, at)
-    check_magnets(g, at)
-    return (shaft(g, at), *magnet_rotor(g, at), *stator(g, at), *enclosure(g, at), *_fan(g, at), *_fluids(g, at))
-
-
-def build_tefc(g: Geometry) -> tuple[Part, ...]:
-    """Solids and fluids of a totally enclosed cage machine. Raises InputError for parts that do not fit."""
-    at = Layout(g)
-    check(g, at)
-    check_cage(g, at)
-    return (shaft(g, at), *cage_rotor(g, at), *stator(g, at), *enclosure(g, at), *_fan(g, at), *_fluids(g, at))
-
-
-def _fan(g: Geometry, at: Layout) -> tuple[Part, ...]:
-    return shaft_fan(g.fan, g.shaft.diameter / 2, at.cowl0, 0.0)
+    check_rotor(g, at)
+    fan = shaft_fan(g.fan, g.shaft.diameter / 2, at.cowl0, 0.0)
+    return (shaft(g, at), *rotor(g, at), *stator(g, at), *enclosure(g, at), *fan, *_fluids(g, at))
 
 
 def _fluids(g: Geometry, at: Layout) -> tuple[Part, ...]:
@@ -52,5 +44,9 @@ def _fluids(g: Geometry, at: Layout) -> tuple[Part, ...]:
 _PMSM = "Permanent-magnet machine with interior magnets; open laminations, housing or spiral jacket"
 _TEFC = "Totally enclosed cage machine with axial or radial fins"
 _WITH_MAGNETS = (*parameters.COMMON, *parameters.MAGNETS, *parameters.FAN)
-PMSM = Family("pmsm", _PMSM, _WITH_MAGNETS, build_pmsm, FACES, ports, parameters.features)
-TEFC = Family("tefc", _TEFC, parameters.TEFC, build_tefc, FACES, ports, parameters.features)
+PMSM = Family(
+    "pmsm", _PMSM, _WITH_MAGNETS, partial(_build, check_magnets, magnet_rotor), FACES, ports, parameters.features
+)
+TEFC = Family(
+    "tefc", _TEFC, parameters.TEFC, partial(_build, check_cage, cage_rotor), FACES, ports, parameters.features
+)

@@ -1,7 +1,5 @@
 """Values of a slotted machine that are allowed one by one but do not fit together."""
 
-from __future__ import annotations
-
 import math
 
 from geom.description.geometry import Geometry

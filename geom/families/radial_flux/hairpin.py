@@ -4,8 +4,6 @@ Layer 1 lies at the bottom of the slot, the last at its opening. A slot has one 
 circles between the layers; enamel and resin around it are no solids but contacts (lumped.machine.hairpin).
 """
 
-from __future__ import annotations
-
 import math
 
 from geom.description import shapes

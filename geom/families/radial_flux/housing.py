@@ -1,7 +1,5 @@
 """End-caps, bearings, housing, foot and base."""
 
-from __future__ import annotations
-
 import math
 
 from geom.description import shapes
@@ -24,7 +22,10 @@ def enclosure(g: Geometry, at: Layout) -> tuple[Part, ...]:
     bearing = shapes.ring(g.shaft.diameter / 2, seat)
     cap = shapes.ring(seat, at.cap_radius)
     left, right = (0.0, at.cap0), (at.cap1, at.length)
-    skirts = _skirts(g, at)
+    skirts: tuple[Prism, ...] = ()
+    if g.housing.kind == "none":  # the end-caps reach to the laminations
+        skirt = shapes.ring(at.core - g.frame.skirt, at.core)
+        skirts = (skirt, at.cap0, at.core0), (skirt, at.core1, at.cap1)
     return (
         *_housing(g, at),
         Part("endcap.left", "aluminium-cast", ((cap, *left), *skirts[:1]), role=Role.END_SHIELD),
@@ -36,22 +37,18 @@ def enclosure(g: Geometry, at: Layout) -> tuple[Part, ...]:
     )
 
 
-def _skirts(g: Geometry, at: Layout) -> tuple[Prism, ...]:
-    """Without a housing the end-caps reach to the laminations."""
-    if g.housing.kind != "none":
-        return ()
-    skirt = shapes.ring(at.core - g.frame.skirt, at.core)
-    return (skirt, at.cap0, at.core0), (skirt, at.core1, at.cap1)
-
-
 def _housing(g: Geometry, at: Layout) -> tuple[Part, ...]:
-    if g.housing.kind == "none":
+    kind, cad_shape = g.housing.kind, None
+    if kind == "none":
         return ()
-    if g.housing.kind == "plain":
-        walls: tuple[Prism, ...] = ((shapes.ring(at.core, at.wall), at.cap0, at.cap1),)
-    else:
-        walls = {"axial-fins": _axial_fins, "radial-fins": _radial_fins, "spiral": _spiral}[g.housing.kind](g, at)
-    return (Part("housing", "aluminium-cast", walls, cad_shape=_cad_shape(g, at), role=Role.HOUSING),)
+    walls: tuple[Prism, ...] = ((shapes.ring(at.core, at.body), at.cap0, at.cap1),)
+    if kind == "spiral":  # as it is made: a helix for the rings, round bores
+        turns, bored = turns_of(g, at), nozzles(g, at)
+        cad_shape = CadShape(walls, (turns.helix(g.housing.port), *(nozzle.drill for nozzle in bored)))
+        walls = tuple(turns.walls(at.core, at.body, at.cap0, at.cap1, bored))
+    elif kind != "plain":
+        walls = _axial_fins(g, at) if kind == "axial-fins" else _radial_fins(g, at)
+    return (Part("housing", "aluminium-cast", walls, cad_shape=cad_shape, role=Role.HOUSING),)
 
 
 def _axial_fins(g: Geometry, at: Layout) -> tuple[Prism, ...]:
@@ -90,18 +87,6 @@ def fin_spans(g: Geometry, at: Layout) -> list[tuple[float, float]]:
     pitch = g.housing.fin_spacing or (at.cap1 - at.cap0) / g.housing.fins
     half, first = g.housing.fin_thickness / 2, at.middle - (g.housing.fins - 1) / 2 * pitch
     return [(first + i * pitch - half, first + i * pitch + half) for i in range(g.housing.fins)]
-
-
-def _spiral(g: Geometry, at: Layout) -> tuple[Prism, ...]:
-    return tuple(turns_of(g, at).walls(at.core, at.body, at.cap0, at.cap1, nozzles(g, at)))
-
-
-def _cad_shape(g: Geometry, at: Layout) -> CadShape | None:
-    """A spiral jacket as it is made: a helix for the rings, round bores."""
-    if g.housing.kind != "spiral":
-        return None
-    helix, drills = turns_of(g, at).helix(g.housing.port), (nozzle.drill for nozzle in nozzles(g, at))
-    return CadShape(((shapes.ring(at.core, at.body), at.cap0, at.cap1),), (helix, *drills))
 
 
 def turns_of(g: Geometry, at: Layout) -> Turns:

@@ -4,8 +4,6 @@ Here stands what their lengths are measured in, so that any ratios fit together:
 would begin, with room to spare for what the other ratios may do.
 """
 
-from __future__ import annotations
-
 import math
 from pathlib import Path
 
@@ -13,7 +11,7 @@ from geom.description.geometry import Features, Geometry
 from geom.description.parameters import Measure, parameter_sets
 from geom.families.radial_flux import hairpin
 from geom.families.radial_flux.layout import Layout
-from geom.families.radial_flux.magnets import widest
+from geom.families.radial_flux.rotors import widest
 from geom.families.shaft_fan import fan_measures
 
 outer = Measure("the laminations' outer diameter", lambda g: g.stator.outer_diameter)
@@ -64,18 +62,16 @@ def _rotor(g: Geometry) -> float:
     return g.stator.bore_diameter / 2 - g.stator.air_gap
 
 
-def _pole(g: Geometry) -> float:
-    """Pole pitch at the rotor's surface or the iron under it, whichever is smaller."""
-    return min(2 * _rotor(g) * math.sin(math.pi / g.rotor.poles), _rotor(g) - g.shaft.diameter / 2)
-
-
 even_pitch = Measure("the pitch of fins spread evenly", _even_pitch)
 fin_pitch = Measure(
     "the fins' pitch, or 0.3 of the laminations where it is less",
     lambda g: min(g.housing.fin_spacing or _even_pitch(g), 0.3 * g.stator.outer_diameter),
 )
 channel = Measure("the channel's width (0.6 of it with one turn), or a sixth of the laminations, the smaller", _channel)
-pole = Measure("pole pitch or rotor iron, the smaller", _pole)
+pole = Measure(
+    "pole pitch or rotor iron, the smaller",
+    lambda g: min(2 * _rotor(g) * math.sin(math.pi / g.rotor.poles), _rotor(g) - g.shaft.diameter / 2),
+)
 magnet = Measure("the widest magnet that fits", widest)
 iron = Measure("rotor surface to shaft", lambda g: _rotor(g) - 0.55 * g.shaft.diameter)
 bar_pitch = Measure(

@@ -1,7 +1,5 @@
 """Laminations, slots and winding of the stator."""
 
-from __future__ import annotations
-
 import math
 from itertools import pairwise
 

@@ -4,8 +4,6 @@ The axis is z, the commutator sits on the right (high z), the feet point to -y. 
 one or two liquid jackets between the feet.
 """
 
-from __future__ import annotations
-
 from geom.description import shapes
 from geom.description.geometry import Geometry
 from geom.description.part import Part, fluid
@@ -13,10 +11,9 @@ from geom.description.roles import Role
 from geom.families.family import Family
 from geom.families.series_dc.checks import check
 from geom.families.series_dc.commutator import brush_gear
-from geom.families.series_dc.features import features
 from geom.families.series_dc.housing import coolant, enclosure, ports
 from geom.families.series_dc.layout import Axial, Radii
-from geom.families.series_dc.parameters import PARAMETERS
+from geom.families.series_dc.parameters import PARAMETERS, features
 from geom.families.series_dc.rotor import rotor
 from geom.families.series_dc.stator import stator
 from geom.families.shaft_fan import shaft_fan

@@ -1,7 +1,5 @@
 """Values of a series-wound motor that are allowed one by one but do not fit together."""
 
-from __future__ import annotations
-
 import math
 
 from geom.description import shapes
@@ -32,7 +30,12 @@ def check(g: Geometry, z: Axial) -> None:
     first, last = min(z.ring0, z.field0, z.yoke0), max(z.bars1, z.field1, z.yoke1)
     fit.above(z.core0 - first, "flange.rotor_offset", ": end winding, field coil and yoke")
     fit.above(last + z.end - z.inner1, "shaft.length", ", for all that it carries")
-    _check_fins(fit, g, r)
+    if fins := g.housing.fins:
+        circle = 2 * math.pi * r.shell
+        pitch = g.housing.fin_spacing or circle / fins
+        fit.below(0.9 * pitch, "housing.fin_thickness", f": {fins} fins on this housing overlap otherwise")
+        most = f"at most {circle / fins * mm:.4g} mm"
+        fit.need(fins * g.housing.fin_spacing <= circle, "housing.fin_spacing", most)
     if g.commutator.bars:
         around = math.pi * g.commutator.diameter / g.commutator.bars
         high = (g.commutator.diameter - g.shaft.hub_diameter) / 2
@@ -78,15 +81,6 @@ def _ducts_fit(g: Geometry, r: Radii) -> bool:
     middle, radius = duct_circle(g, r), g.rotor.duct_diameter / 2
     clear = 2 * middle * math.sin(math.pi / g.rotor.ducts) > 2.2 * radius
     return clear and middle - 1.1 * radius > g.shaft.core_diameter / 2 and middle + 1.1 * radius < r.slot_bottom
-
-
-def _check_fins(fit: Fit, g: Geometry, r: Radii) -> None:
-    fins, around = g.housing.fins, 2 * math.pi * r.shell
-    if fins:
-        pitch = g.housing.fin_spacing or around / fins
-        fit.below(0.9 * pitch, "housing.fin_thickness", f": {fins} fins on this housing overlap otherwise")
-        most = f"at most {around / fins * mm:.4g} mm"
-        fit.need(fins * g.housing.fin_spacing <= around, "housing.fin_spacing", most)
 
 
 def _check_jackets(fit: Fit, g: Geometry, r: Radii, z: Axial) -> None:

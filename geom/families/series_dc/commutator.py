@@ -1,7 +1,5 @@
 """The commutator, one homogeneous body or copper bars with mica between them and to the hub; and its brush gear."""
 
-from __future__ import annotations
-
 import math
 
 from geom.description import shapes
@@ -21,26 +19,20 @@ def commutator(g: Geometry, z: Axial, r: Radii) -> tuple[Part, ...]:
     if not g.commutator.bars:
         rings = tuple((shapes.ring(hub, top), a, b) for top, a, b in zones)
         return (Part("commutator", "commutator", rings, role=Role.COMMUTATOR),)
-    bars, mica = (tuple(prism for zone in zones for prism in of(g, hub, *zone)) for of in (_bars, _mica))
-    return (
-        Part("commutator", "copper", bars, role=Role.COMMUTATOR),
-        Part("commutator.mica", "mica", mica, role=Role.INSULATION, turns=True),
-    )
-
-
-def _bars(g: Geometry, hub: float, top: float, z0: float, z1: float) -> tuple[Prism, ...]:
     half_gap, angles = g.commutator.mica / g.commutator.diameter, shapes.evenly(g.commutator.bars)
     inner, pitch = hub + g.commutator.mica, angles[1]
-    return extrude([shapes.sector(inner, top, a + half_gap, a + pitch - half_gap) for a in angles], z0, z1)
-
-
-def _mica(g: Geometry, hub: float, top: float, z0: float, z1: float) -> tuple[Prism, ...]:
-    half_gap, angles = g.commutator.mica / g.commutator.diameter, shapes.evenly(g.commutator.bars)
-    inner = hub + g.commutator.mica
-    between = [shapes.sector(inner, top, a - half_gap, a + half_gap) for a in angles]
     ends = sorted(a + side for a in angles for side in (-half_gap, half_gap))
     around = tuple(shapes.polar(inner, a, shapes.bulge_of(gap)) for a, gap in zip(ends, shapes.gaps(ends)))
-    return extrude([Profile(around, (shapes.circle_loop(hub),)), *between], z0, z1)
+    sleeve = Profile(around, (shapes.circle_loop(hub),))
+    bars, mica = list[Prism](), list[Prism]()
+    for top, a0, a1 in zones:
+        bars += extrude([shapes.sector(inner, top, a + half_gap, a + pitch - half_gap) for a in angles], a0, a1)
+        between = [shapes.sector(inner, top, a - half_gap, a + half_gap) for a in angles]
+        mica += extrude([sleeve, *between], a0, a1)
+    return (
+        Part("commutator", "copper", tuple(bars), role=Role.COMMUTATOR),
+        Part("commutator.mica", "mica", tuple(mica), role=Role.INSULATION, turns=True),
+    )
 
 
 def brush_gear(g: Geometry, z: Axial) -> tuple[Part, ...]:

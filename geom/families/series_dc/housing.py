@@ -1,7 +1,5 @@
 """Housing with fins or liquid jackets, their ports and coolant, flanges, bearings, feet and base."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 
@@ -23,8 +21,14 @@ def enclosure(g: Geometry, z: Axial) -> tuple[Part, ...]:
     left, right = (z.flange0, z.inner0), (z.inner1, z.flange1)
     top, middle = -g.feet.shaft_height, (z.inner0 + z.inner1) / 2
     plate = shapes.rectangle(-g.base.width / 2, g.base.width / 2, top - g.base.thickness, top)
+    # With jackets the housing as it is made: round bores, and a helix for the rings.
+    bored, helical = nozzles(g), g.jacket.layout == "helical"
+    cad_shape = None
+    if bored:
+        helices = [turns_of(g, r, *span).helix(g.jacket.port) for span in z.jackets.values() if helical]
+        cad_shape = CadShape(_walls(g, z, r, None if helical else ()), (*helices, *(nozzle.drill for nozzle in bored)))
     return (
-        _housing(g, z, r),
+        Part("housing", "aluminium-cast", _walls(g, z, r, bored), cad_shape=cad_shape, role=Role.HOUSING),
         Part("flange.left", "aluminium-cast", ((flange, *left),), role=Role.END_SHIELD),
         Part("flange.right", "aluminium-cast", ((flange, *right),), role=Role.END_SHIELD),
         Part("bearing.left", "bearing", ((bearing, *left),), role=Role.BEARING),
@@ -35,35 +39,20 @@ def enclosure(g: Geometry, z: Axial) -> tuple[Part, ...]:
     )
 
 
-def _housing(g: Geometry, z: Axial, r: Radii) -> Part:
-    """The housing; with jackets, as it is made: round bores, and a helix for the rings."""
-    bored, helical = nozzles(g), g.jacket.layout == "helical"
-    cad_shape = None
-    if bored:
-        helices = [turns_of(g, r, *span).helix(g.jacket.port) for span in z.jackets.values() if helical]
-        cad_shape = CadShape(_walls(g, z, r, None if helical else ()), (*helices, *(nozzle.drill for nozzle in bored)))
-    return Part("housing", "aluminium-cast", _walls(g, z, r, bored), cad_shape=cad_shape, role=Role.HOUSING)
-
-
 def _walls(g: Geometry, z: Axial, r: Radii, bored: Sequence[Nozzle] | None) -> tuple[Prism, ...]:
     """The housing with bores, or for None without channels."""
-    finned = Profile(_finned(g, r), (shapes.circle_loop(r.yoke1),))
+    around = shapes.spread(g.housing.fins, math.pi / 2, g.housing.fin_spacing / r.shell)
+    angles = [a for a in around if not _over_foot(g, r, a)]
+    outside = shapes.finned_loop(r.shell, g.housing.fin_thickness, r.fins, angles) if angles else None
+    finned = Profile(outside or shapes.circle_loop(r.shell), (shapes.circle_loop(r.yoke1),))
     prisms: list[Prism] = []
     here = z.inner0
     for name, (z0, z1) in z.jackets.items():
         prisms += [(finned, here, z0)] if here < z0 else []
         bores = None if bored is None else [nozzle for nozzle in bored if nozzle.jacket == name]
-        prisms += [(jacket_ring(r), z0, z1)] if bores is None else jacket_walls(g, r, z0, z1, bores)
+        prisms += [(shapes.ring(r.yoke1, r.jacket), z0, z1)] if bores is None else jacket_walls(g, r, z0, z1, bores)
         here = z1
     return (*prisms, (finned, here, z.inner1))
-
-
-def _finned(g: Geometry, r: Radii) -> tuple[tuple[float, float, float], ...]:
-    around = shapes.spread(g.housing.fins, math.pi / 2, g.housing.fin_spacing / r.shell)
-    angles = [a for a in around if not _over_foot(g, r, a)]
-    if not angles:
-        return shapes.circle_loop(r.shell)
-    return shapes.finned_loop(r.shell, g.housing.fin_thickness, r.fins, angles)
 
 
 def _over_foot(g: Geometry, r: Radii, angle: float) -> bool:
@@ -86,11 +75,6 @@ def _feet(g: Geometry, z: Axial, r: Radii) -> tuple[Prism, ...]:
     return tuple((foot, *span) for foot in (left, right) for span in spans)
 
 
-def jacket_ring(r: Radii) -> Profile:
-    """Section of a jacket between its channels."""
-    return shapes.ring(r.yoke1, r.jacket)
-
-
 def jacket_walls(g: Geometry, r: Radii, z0: float, z1: float, bored: Sequence[Nozzle]) -> list[Prism]:
     """The housing's wall around the channels of one jacket, with the bores of its ports."""
     if g.jacket.layout == "helical":
@@ -100,7 +84,7 @@ def jacket_walls(g: Geometry, r: Radii, z0: float, z1: float, bored: Sequence[No
         for sectors, a, b in _zigzag(g, r, z0, z1)
         for low, high, ports in slices(a, b, bored)
     ]
-    solid = jacket_ring(r)
+    solid = shapes.ring(r.yoke1, r.jacket)
     return [(solid, z0, z0 + g.jacket.rib), *pierced, (solid, z1 - g.jacket.rib, z1)]
 
 

@@ -1,7 +1,5 @@
 """Where things are: positions along the axis and radii that several parts share."""
 
-from __future__ import annotations
-
 from geom.description.geometry import Geometry
 
 

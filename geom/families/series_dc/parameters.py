@@ -4,14 +4,13 @@ Here stands what their lengths are measured in, so that any ratios fit together:
 would begin, with room to spare for what the other ratios may do.
 """
 
-from __future__ import annotations
-
 import math
 from pathlib import Path
 
-from geom.description.geometry import Geometry
+from geom.description.geometry import Duct, Features, Geometry, PoleCoils, SeriesWound
 from geom.description.parameters import Measure, parameter_sets
-from geom.families.series_dc.layout import Radii
+from geom.description.shapes import evenly
+from geom.families.series_dc.layout import Axial, Radii
 from geom.families.shaft_fan import fan_measures
 
 STEEPEST = math.pi / 4  # of the line between two poles, where there are fewer than four
@@ -125,11 +124,6 @@ def _port(g: Geometry) -> float:
     return min(wide, 3 * g.jacket.rib, _shell(g) / 4)
 
 
-def _outermost(g: Geometry) -> float:
-    r = Radii(g)
-    return max(r.fins, r.jacket) if g.jacket.sides else r.fins
-
-
 shell = Measure("the housing's radius", _shell)
 even_pitch = Measure("the pitch of fins spread evenly", _even_pitch)
 fin_pitch = Measure(
@@ -143,13 +137,52 @@ port = Measure(
     _port,
 )
 fan, fan_hub = fan_measures("housing", _shell, seat.span)
-outermost = Measure("the radius over fins or jacket", _outermost)
+outermost = Measure(
+    "the radius over fins or jacket", lambda g: max(Radii(g).fins, Radii(g).jacket) if g.jacket.sides else Radii(g).fins
+)
 beside = Measure("the inner side of a foot to the edge of the housing", lambda g: 0.95 * _shell(g) - g.feet.inner)
 stance = Measure("the width over the feet", lambda g: 2 * (g.feet.inner + g.feet.width))
 footing = Measure("the length over the feet", lambda g: _inside(g) - 2 * g.feet.inset)
 above = Measure(
     "the armature's radius over the commutator's", lambda g: (g.rotor.outer_diameter - g.commutator.diameter) / 2
 )
+
+
+def features(g: Geometry) -> Features:
+    """Field coils around the poles, ways for air beside the gap, and where the losses are."""
+    z = Axial(g)
+    armature = ("winding.armature", "winding.armature.left", "winding.armature.right")
+    sliding = ("commutator", "brushes") if g.brushes.arms else ("commutator",)
+    bearings = ("bearing.left", "bearing.right")
+    number, d = g.rotor.ducts, g.rotor.duct_diameter
+    length = g.rotor.stack_length
+    in_rotor = Duct(number * math.pi * d**2 / 4, number * math.pi * d, length, turns=True)
+    return Features(
+        air_gap=g.stator.air_gap,
+        coils={"winding.field": _coils(g, z)},
+        shoes={"poles": g.stator.shoe},
+        fan_space="air.fan" if g.fan.depth else "",
+        ducts={"air.interpolar": _between_poles(g), **({"air.ducts": in_rotor} if number else {})},
+        series=SeriesWound(armature, "winding.field", "rotor.core", "poles", sliding, bearings),
+    )
+
+
+def _coils(g: Geometry, z: Axial) -> PoleCoils:
+    """The wire runs along the axis beside a pole and across it at the ends."""
+    half = (z.core1 - z.core0) / 2 + g.field.insulation
+    width = g.stator.body_width / 2 + g.field.insulation
+    return PoleCoils(tuple(evenly(g.stator.poles, math.pi / 2)), (z.core0 + z.core1) / 2, half, width)
+
+
+def _between_poles(g: Geometry) -> Duct:
+    bore = g.rotor.outer_diameter / 2 + g.stator.air_gap
+    poles, body = g.stator.poles, g.stator.body_width
+    depth = g.stator.yoke_inner_diameter / 2 - bore
+    coils = 2 * poles * g.field.coil_width * g.field.coil_height
+    area = math.pi * (bore + depth) ** 2 - math.pi * bore**2 - poles * body * depth - coils
+    perimeter = 2 * math.pi * (2 * bore + depth) + 2 * poles * (depth - body)
+    return Duct(area, perimeter, g.rotor.stack_length)
+
 
 _MEASURES = {name: measure for name, measure in globals().items() if isinstance(measure, Measure)}
 PARAMETERS = parameter_sets(Path(__file__).with_name("parameters.csv"), _MEASURES)["all"]

@@ -1,7 +1,5 @@
 """Shaft, armature and commutator."""
 
-from __future__ import annotations
-
 from geom.description import shapes
 from geom.description.geometry import Geometry
 from geom.description.part import Part, Prism, extrude
@@ -17,6 +15,9 @@ def rotor(g: Geometry, z: Axial) -> tuple[Part, ...]:
     wire = Profile(shapes.bar_loop(r.wire_bottom, r.wire_top, g.rotor.slot_width - 2 * g.rotor.liner))
     liner = Profile(shapes.bar_loop(r.slot_bottom, r.rotor, g.rotor.slot_width), (wire.outer,))
     wires, liners = shapes.turned(wire, angles), shapes.turned(liner, angles)
+    ducts = shapes.turned(shapes.disc(g.rotor.duct_diameter / 2, duct_circle(g, r)), shapes.evenly(g.rotor.ducts))
+    loop = shapes.slotted_loop(r.rotor, g.rotor.slot_width, r.slot_bottom, angles)
+    sheet = Profile(loop, (shapes.circle_loop(g.shaft.core_diameter / 2), *(duct.outer for duct in ducts)))
     ends = shapes.ring(r.wire_bottom, r.wire_top)
     loose = (g.rotor.end_fill, g.rotor.end_impregnation)
     inner = extrude(wires, z.core0, z.core1)
@@ -30,7 +31,7 @@ def rotor(g: Geometry, z: Axial) -> tuple[Part, ...]:
     )
     return (
         Part("shaft", "steel", tuple((shapes.disc(d / 2), z0, z1) for d, z0, z1 in steps), role=Role.SHAFT),
-        Part("rotor.core", "electrical-steel", ((_lamination(g, r, angles), z.core0, z.core1),), role=Role.ROTOR),
+        Part("rotor.core", "electrical-steel", ((sheet, z.core0, z.core1),), role=Role.ROTOR),
         Part("slot.liner", "slot-liner", extrude(liners, z.core0, z.core1), role=Role.INSULATION, turns=True),
         _winding("winding.armature", "winding", inner, (g.rotor.fill, g.rotor.impregnation)),
         _winding("winding.armature.left", "end-winding", left, loose),
@@ -41,12 +42,6 @@ def rotor(g: Geometry, z: Axial) -> tuple[Part, ...]:
 
 def _winding(name: str, material: str, prisms: tuple[Prism, ...], filling: tuple[float, float]) -> Part:
     return Part(name, material, prisms, filling, role=Role.WINDING, turns=True)
-
-
-def _lamination(g: Geometry, r: Radii, angles: list[float]) -> Profile:
-    ducts = shapes.turned(shapes.disc(g.rotor.duct_diameter / 2, duct_circle(g, r)), shapes.evenly(g.rotor.ducts))
-    loop = shapes.slotted_loop(r.rotor, g.rotor.slot_width, r.slot_bottom, angles)
-    return Profile(loop, (shapes.circle_loop(g.shaft.core_diameter / 2), *(duct.outer for duct in ducts)))
 
 
 def duct_circle(g: Geometry, r: Radii) -> float:

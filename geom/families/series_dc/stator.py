@@ -1,7 +1,5 @@
 """Yoke, poles and field coils."""
 
-from __future__ import annotations
-
 import math
 
 from geom.description import shapes

@@ -6,8 +6,7 @@ from geom import InputError
 from geom.description import shapes
 from geom.description.part import Part, fluid
 from geom.meshing.blocks import find_blocks, find_columns
-from geom.meshing.partition import partition
-from geom.meshing.voids import filled
+from geom.meshing.partition import filled, partition
 
 
 def body(name, profile, z0, z1):

@@ -10,10 +10,10 @@ from geom.description import shapes
 from geom.description.machine import Machine
 from geom.description.part import Part
 from geom.description.roles import Role
-from lumped.build.load_cases import fluid_rises, rated_watts
+from lumped.build.fixed_coefficients import fluid_rises, rated_watts
 from lumped.build.network_size import accurate_network
 from lumped.build.pipeline import prepared
-from lumped.condensation.zone import Zone
+from lumped.condensation.condensed import Zone
 
 MACHINE = load_machine("ipmsm-48s8p-jacket")
 

@@ -5,8 +5,7 @@ import pytest
 
 from fem.solvers.solve import Solver
 from geom import load_machine
-from lumped.build.crosscheck import crosscheck
-from lumped.build.local_laws import copper, radiating, with_local_laws
+from lumped.build.crosscheck import copper, crosscheck, radiating, with_local_laws
 from lumped.build.pipeline import build
 from lumped.condensation.reduction import Recipe
 from lumped.machine.loss_sources import loss_shares

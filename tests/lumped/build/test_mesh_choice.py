@@ -226,7 +226,7 @@ def test_the_condensation_may_use_what_the_mesh_leaves(monkeypatch, accuracy, wo
     """Half of the wish where a mesh that misses it leaves nothing; never more than 2 %."""
     asked = []
     choice = mesh_choice.MeshChoice(FIRST, {"winding": worst}, 1000, 2000, met)
-    size = network_size.NetworkSize(None, None, network_size.accuracy_of(2.0), (), None)
+    size = network_size.NetworkSize(None, None, network_size.Accuracy(1.0, 2.0, 2.0), (), None)
     monkeypatch.setattr(network_size, "size_of", lambda machine, how: (1000, 2000))
     monkeypatch.setattr(network_size, "chosen_mesh", lambda *of: choice)
     monkeypatch.setattr(network_size, "smallest_network", lambda machine, left, **how: asked.append(left) or size)

@@ -22,7 +22,7 @@ from lumped.correlations import (
     oil,
     rotating,
 )
-from lumped.transfer.oils import ATF
+from lumped.transfer.coolant import ATF
 from lumped.transfer.properties import Fluid, air, ethylene_glycol
 
 AIR, GLYCOL = air(60.0), ethylene_glycol(60.0, 0.5)

@@ -5,7 +5,7 @@ import pytest
 from scipy.integrate import solve_bvp, solve_ivp
 
 from lumped.correlations import RangeWarning, oil, rotating
-from lumped.transfer.oils import ATF
+from lumped.transfer.coolant import ATF
 
 HOT = ATF(80.0)
 

@@ -5,7 +5,7 @@ import pytest
 
 from geom.errors import InputError
 from lumped.circuits.circuit import film_in
-from lumped.circuits.passages import Bore, Nozzles
+from lumped.circuits.hydraulics import Bore, Nozzles
 from lumped.correlations.oil import sprayed_face
 from lumped.correlations.rotating import levich_disc, rotating_shaft
 from lumped.declarations.network import read_network

@@ -8,7 +8,7 @@ from small_networks import boundaries, every_law, inputs
 from geom.errors import InputError
 from lumped.correlations import RangeWarning
 from lumped.declarations.network import read_network
-from lumped.integration.audit import audit
+from lumped.integration.balance import audit
 from lumped.integration.signals import Signals
 from lumped.integration.simulate import Record, simulate
 from lumped.sources.inverter import InverterLoss, PulseLoss

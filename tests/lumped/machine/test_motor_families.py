@@ -10,7 +10,7 @@ from bare_networks import means_only
 from geom import library, load_machine
 from geom.errors import InputError
 from geom.machine_file import machine_from
-from lumped.build.load_cases import rated_streams
+from lumped.build.fixed_coefficients import rated_streams
 from lumped.build.pipeline import prepared
 from lumped.integration.steady import steady
 from lumped.machine.films import surroundings

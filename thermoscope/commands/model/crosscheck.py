@@ -46,8 +46,7 @@ def crosscheck(machine: Machine, out: Out = None, accuracy: Accuracy = ACCURACY,
 def checked(built: Built, size: NetworkSize | None, tell: Progress) -> dict[str, Any]:
     """Part by part and link by link at a point where the machine settles, and the hand formulas there."""
     from lumped.build.analytical_checks import analytical_checks
-    from lumped.build.crosscheck import crosscheck as compare
-    from lumped.build.local_laws import with_local_laws
+    from lumped.build.crosscheck import crosscheck as compare, with_local_laws
     from lumped.machine.loss_sources import loss_shares
 
     tell("field against network")

@@ -18,7 +18,7 @@ from geom.storage import write_whole
 from geom.table import Table
 from geom.text import counted
 from lumped.drives.coupled import coupled
-from lumped.integration.audit import Audit, audit
+from lumped.integration.balance import Audit, audit
 from lumped.integration.runaway import checked_run
 from lumped.integration.simulate import Record, simulate as integrated
 from lumped.model.network import Network, Row
