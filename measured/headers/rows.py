@@ -43,7 +43,8 @@ def layout(rows: Sequence[Row], where: str) -> Layout:
     units = max(unit_rows, key=lambda i: (len([c for c in rows[i] if c]), i), default=None)
     candidates = [i for i in block if i != units]
     if not candidates:
-        return Layout(_legend(rows[:first], width), ("",) * width, first, width)
+        unit_row = () if units is None else rows[units]
+        return Layout(_legend(rows[:first], width), tuple(_padded(unit_row, width)), first, width)
     candidates = [i for i in candidates if len(trimmed(rows[i])) >= width - 1] or candidates
     gapless = [i for i in candidates if sum(bool(str(c or "").strip()) for c in rows[i]) >= width - 1]
     if any(is_time(str(c)) or quantities_of(str(c)) for i in gapless for c in rows[i]):

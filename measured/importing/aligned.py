@@ -63,7 +63,9 @@ def shift(first: Recording, other: Recording) -> tuple[float, str]:
         shift_s, how = other.clock.start - first.clock.start, "both clocks show dates"
         if (ZONELESS in first.clock.words) != (ZONELESS in other.clock.words):
             hours = [shift_s + HOUR_S * n for n in range(-14, 15)]
-            shift_s = max([shift_s, *hours], key=lambda s: (_overlap(first, other, s), -abs(s)))
+            end, theirs = first.clock.end_s, other.clock.end_s
+            spans = {s: min(end, s + theirs) - max(0.0, s) for s in (shift_s, *hours)}  # for how long both run
+            shift_s = max(spans, key=lambda s: (spans[s], -abs(s)))
             how += ", of which one has no zone: the whole hours are guessed"
         _overlapping(first, other, shift_s)
         return shift_s, how
@@ -80,11 +82,14 @@ def shift(first: Recording, other: Recording) -> tuple[float, str]:
 def common(
     records: Sequence[Recording], window_s: tuple[float, float | None]
 ) -> tuple[tuple[float, float | None], tuple[str, ...]]:
-    """From and to (s from the first row) where all recorders ran, within the window; a note if that is less of it."""
+    """From and to (s from the first row) where all recorders ran and a part was read, within the window; a note if
+    that is less of it."""
     first, start, end = records[0], *window_s
     last = first.clock.end_s
     ends = [r.clock.end_s + r.shift_s for r in records[1:]]
-    begins = max([start, *(float(r.clock.seconds[0]) + r.shift_s for r in records[1:])])
+    parts = [(r.clock.seconds + r.shift_s, r.source.numbers(g.column)) for r in records for g in r.guesses if g.place]
+    reads = [float(t[good][0]) for t, values in parts if (good := np.isfinite(t + values)).any()]
+    begins = max([start, min(reads, default=start), *(float(r.clock.seconds[0]) + r.shift_s for r in records[1:])])
     stops = min([last if end is None else min(end, last), *ends])
     if begins >= stops:
         raise InputError(
@@ -128,11 +133,6 @@ def longest_part(
     start, stop, column = gaps[0]
     what = f"no {f'{column!r} in' if column else 'rows of'} {first.name} from {start:.6g} s to {stop:.6g} s"
     return (begin, end), (f"{what}: the test is its longest part without a gap, {begin:.6g} to {end:.6g} s",)
-
-
-def _overlap(first: Recording, other: Recording, shift_s: float) -> float:
-    """For how long (s) both run."""
-    return min(first.clock.end_s, shift_s + other.clock.end_s) - max(0.0, shift_s)
 
 
 def _overlapping(first: Recording, other: Recording, shift_s: float) -> None:

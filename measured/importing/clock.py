@@ -261,11 +261,8 @@ def checked(clock: Clock, source: Source) -> Clock:
     usual = float(np.median(np.abs(step)))
     late = np.flatnonzero(t[finite] < np.maximum.accumulate(t[finite]))
     back, hour = np.flatnonzero(step < 0), np.flatnonzero(np.abs(step - HOUR_S - usual) < usual)
-    if (
-        clock.start is not None
-        and back.size == 1
-        and abs(step[back[0]] + HOUR_S - usual) <= max(usual, 1.0) < HOUR_S / 2
-    ):
+    by_hour = back.size == 1 and abs(step[back[0]] + HOUR_S - usual) <= max(usual, 1.0) < HOUR_S / 2
+    if clock.start is not None and by_hour:
         at = np.flatnonzero(finite)[back[0] + 1]
         t[at:] += HOUR_S
         doubts.append(f"the clock runs back by an hour in row {at + 1}: taken as the end of summer time")
@@ -351,13 +348,11 @@ def _in_columns(source: Source) -> Clock | None:
         return None
     none = np.zeros(source.rows)
     year = parts.get("year", none + 1970).astype(int)
-    if "day of year" in parts:
-        day = (year - 1970).astype("M8[Y]").astype("M8[D]") + (parts["day of year"] - 1).astype(int)
-    else:
-        months = (12 * (year - 1970) + parts.get("month", none + 1).astype(int) - 1).astype("M8[M]")
-        day = months.astype("M8[D]") + (parts.get("day", none + 1) - 1).astype(int)
+    month = none + 1 if "day of year" in parts else parts.get("month", none + 1)
+    day = parts.get("day of year", parts.get("day", none + 1)).astype(int) - 1
+    date = (12 * (year - 1970) + month.astype(int) - 1).astype("M8[M]").astype("M8[D]") + day
     of_day = HOUR_S * parts["hour"] + 60 * parts.get("minute", none) + parts.get("second", none)
-    seconds = (day - EPOCH) / np.timedelta64(1, "s") + of_day
+    seconds = (date - EPOCH) / np.timedelta64(1, "s") + of_day
     clock = _since_first(seconds, tuple(c for c, _ in read.values()), f"{', '.join(read)} in columns of their own")
     return clock if days and "year" in parts else replace(clock, start=None)
 

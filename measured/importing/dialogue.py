@@ -41,12 +41,9 @@ class Dialogue:
         completed = [self._completed(g, source.labels[g.column]) if self.asks else g for g in guesses]
         constants = self.constants
         out = [g.without("--set gives it") if (g.feeds or g.place) in constants else g for g in completed]
-        if not any(g.place in self.target.places or g.feeds or g.place for g in out):
-            raise InputError(
-                "no column of it fits the model",
-                str(source.file),
-                f"columns for {', '.join([*self.target.places, *self.target.inputs][:8])}",
-            )
+        if not any(g.used for g in out):
+            right = f"columns for {', '.join([*self.target.places, *self.target.inputs][:8])}"
+            raise InputError("no column of it fits the model", str(source.file), right)
         return out
 
     def _completed(self, g: Guess, label: str) -> Guess:
@@ -76,12 +73,8 @@ class Dialogue:
         edges = {n: v for n, v in self.constants.items() if n in self.target.boundaries}
         draft = replace(draft, constants=inputs, boundaries=edges)
         if not any(g.place in self.target.places for g in draft.guesses):
-            files = ", ".join(r.name for r in draft.records)
-            raise InputError(
-                "no column is a temperature at a place of the model",
-                files,
-                f"one for {', '.join(list(self.target.places)[:8])}",
-            )
+            files, right = ", ".join(r.name for r in draft.records), f"one for {', '.join([*self.target.places][:8])}"
+            raise InputError("no column is a temperature at a place of the model", files, right)
         draft = replace(draft, squares=squares_of(draft.guesses, self.target))
         return self._with_inputs(self._with_boundaries(draft))
 
@@ -99,17 +92,14 @@ class Dialogue:
     def _with_inputs(self, draft: Draft) -> Draft:
         values, unknown = dict(draft.constants), []
         for name in missing_inputs(draft, self.target):
-            value = self._number(f"{draft.name}: {name}, constant throughout?", "")
-            if value is None:
+            if (value := self._number(f"{draft.name}: {name}, constant throughout?", "")) is None:
                 unknown.append(name)
             else:
                 values[name] = value
         if unknown:
-            files = ", ".join(r.name for r in draft.records)
-            right = " ".join(f"--set {n}=VALUE" for n in unknown)
-            raise InputError(
-                f"no column gives {', '.join(unknown)}, which the model reads", files, f"{right} where it was constant"
-            )
+            files, right = ", ".join(r.name for r in draft.records), " ".join(f"--set {n}=VALUE" for n in unknown)
+            what = f"no column gives {', '.join(unknown)}, which the model reads"
+            raise InputError(what, files, f"{right} where it was constant")
         return replace(draft, constants=values)
 
     def _number(self, question: str, default: str) -> float | None:

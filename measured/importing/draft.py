@@ -16,7 +16,7 @@ from measured.importing.guess import AXES, Guess, in_memory
 from measured.importing.target import Target
 
 INSTANTS = 2000  # of a test on the analysis grid; more cost time and tell little
-LONGEST_STEP_S = 86400.0  # of an analysis
+SHORTEST_STEP_S, LONGEST_STEP_S = 1e-3, 86400.0  # of an analysis
 NICE = (1, 2, 5)  # what people read off a clock: 1, 2, 5, 10 s
 ASSUMED_ROOM = "is assumed, the coldest sensor at the start"
 STILL = 5  # readings whose median a column starts from
@@ -92,7 +92,10 @@ def sample_of(drafts: Sequence[Draft]) -> float:
     if step_s > LONGEST_STEP_S:
         what = f"its rows are {step_s:g} s apart, too far to see a machine warm"
         raise InputError(what, drafts[0].records[0].name, f"rows at most {LONGEST_STEP_S:g} s apart")
-    needed = max(step_s, max(d.span_s for d in drafts) / INSTANTS)
+    needed = max(SHORTEST_STEP_S, step_s, max(d.span_s for d in drafts) / INSTANTS)
+    if (shortest := min(drafts, key=lambda d: d.span_s)).span_s < needed:
+        what = f"lasts {shortest.span_s:g} s, too short to see a machine warm"
+        raise InputError(what, shortest.name, f"a test of {needed:g} s or more")
     scale = 10.0 ** np.floor(np.log10(needed))
     steps = [n * scale for n in (*NICE, 10)]
     return min(float(f"{next(s for s in steps if s >= needed * (1 - 1e-6)):.6g}"), LONGEST_STEP_S)

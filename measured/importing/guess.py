@@ -84,6 +84,7 @@ ANGLE = re.compile(r"(?i)theta(?:[_ ]?[a-z]{0,2}|[_ ]?(?:mech|elec|el|rot))$")  
 OMEGA = re.compile(r"(?<=\.)w$|^w(?=$|_(?:m|r|mot|rotor|shaft|el)$)")  # beside a torque
 PARTNERS = {"v": ("i", "voltage"), "i": ("v", "current"), "current": ("voltage", "current")}  # dc.v beside dc.i
 SUFFIX = re.compile(r"_[a-z]{1,2}$")  # of a header, with its unit
+ERPM = re.compile(r"(?i)(?:^|[^a-z])e_?rpm\b")  # of drones' and skateboards' controllers
 HEATER = re.compile(r"[QH](\d)")  # beside T of the same number
 LOAD = re.compile(r"T_?(?:load|last|mech|em|brake|shaft)")  # of a torque, where its readings are no temperature's
 AXES = ({"id", "iq"}, {"ialpha", "ibeta"})  # components whose squares add up to the current's
@@ -142,12 +143,13 @@ AS_TORQUE = "starts where no temperature does, beside a speed: taken as a torque
 AS_ROOM = "taken as the room, as no other column is: is the machine in there?"
 FLUID_ALONE = "of a coolant by its name; taken as a part, as no other column is"
 INDOORS = "a room of a house: taken as a part"
-AS_FLOW = "the speed of a fan: taken as a flow, of which only the changes count"
+AS_FLOW = "the speed of a fan or a pump: taken as a flow, of which only the changes count"
 ON_OFF = "on and off, by its values alone: heat, cooling, or neither?"
 OF_READINGS = "made of readings that stand nowhere, by its name"
 OF_HEATER = "of a heater, by its letter and the number of a temperature"
 BOTH_WAYS = "below zero, as what heats and cools"
 VARIANT = "its name is that of another temperature and a word more: is it made of that?"
+ELECTRICAL = "electrical: as of one pole pair, in rpm"
 AS_SPEED = "no speed was recorded: the frequency of the supply, as of one pole pair"
 OF_SUPPLY = "the frequency of the supply: the speed beside it says as much"
 LARGEST_HZ = 1000.0  # of a supply; inverters for motors switch faster
@@ -444,7 +446,8 @@ def guess(source: Source, column: str, target: Target) -> Guess:
     heater = HEATER.fullmatch(label) if not unit_text else None
     if heater and f"T{heater[1]}" in source.labels.values():
         label = f"heater {heater[1]}"
-    if not (unit_text or quantities_of(label)) and "load" in tokens(label):
+    controls = any(map(is_setpoint, source.labels.values()))  # a controller's output is a share of what it can give
+    if not (unit_text or quantities_of(label)) and {*tokens(label)} & ({"load", "output"} if controls else {"load"}):
         label = f"{label} share"
     unit = unit_of(unit_text) or _called_unit(label)
     by_values = source.unnamed and not unit
@@ -453,7 +456,7 @@ def guess(source: Source, column: str, target: Target) -> Guess:
         return Guess(column, "", doubt="a clock? say so: time [s]" if _counts_on(source, column) else UNTOLD)
     values = source.numbers(column)
     worded = unit_text or "temperature" in quantities_of(label)
-    if not worded and values[0] in (0, 1) and bool((np.diff(values) == 1).all()):  # "Frame" of a camera
+    if not unit_text and values[0] in (0, 1) and bool((np.diff(values) == 1).all()):  # "Frame" of a camera
         return Guess(column, "", doubt="counts the rows")
     whole = {*values[np.isfinite(values)].tolist()} <= {*range(STATES)}
     flows = is_of_flow(label) or Role.COOLANT in roles_of(label)  # what a fan, a pump or a cooler does
@@ -464,7 +467,9 @@ def guess(source: Source, column: str, target: Target) -> Guess:
     still = not unit_text and np.nanmax(values) == np.nanmin(values)  # temperature_source
     if flag or (quantity == "temperature" and whole and (still or not worded)):
         return Guess(column, "", doubt="a state, by its values" if flag or not on_off else UNTOLD)
-    of_fan = quantity == "speed" and AIR in quantities_of(label) and not is_spoken(label, MACHINE)
+    cooled = any(Role.COOLANT in roles_of(other) for other in source.labels.values())
+    of_fan = quantity == "speed" and (AIR in quantities_of(label) or (cooled and is_spoken(label, PUMP)))
+    of_fan &= not is_spoken(label, MACHINE)
     if of_fan and target.input_of(label, quantity) in ("", INPUTS["speed"]):
         quantity, unit, doubt = "flow_share", "%", AS_FLOW
     if quantity in (AIR, LIQUID, "power") and not unit and np.nanmin(values) == 0.0:
@@ -699,7 +704,7 @@ def _unit(source: Source, column: str, quantity: str, unit: str) -> tuple[str, s
     robot = "velocity" in words and any("effort" in tokens(label) for label in source.labels.values())  # of ROS
     radians = quantity == "speed" and ("omega" in words or OMEGA.search(source.labels[column]) or robot)
     first_unit = "rad/s" if radians else next(iter(QUANTITIES[quantity].units))
-    return first_unit, f"{NO_UNIT}: {first_unit} is assumed"
+    return first_unit, ELECTRICAL if ERPM.search(source.labels[column]) else f"{NO_UNIT}: {first_unit} is assumed"
 
 
 def _placed(base: Guess, label: str, target: Target) -> Guess:
@@ -785,14 +790,8 @@ def assigned(guesses: Sequence[Guess], source: Source, column: str, to: str, tar
     places = {**target.places, **target.boundaries}
     to = to if to in places or to in target.inputs else INPUTS.get(to, to)
     single = to in target.inputs or to in target.boundaries or (to in USUAL and to not in places)
-    return [
-        _moved(g, source, to, target)
-        if g.column == column
-        else g.without(f"{column} gives {to}")
-        if single and to in (g.place, g.feeds)
-        else g
-        for g in guesses
-    ]
+    others = [g.without(f"{column} gives {to}") if single and to in (g.place, g.feeds) else g for g in guesses]
+    return [_moved(g, source, to, target) if g.column == column else o for g, o in zip(guesses, others, strict=True)]
 
 
 def _moved(g: Guess, source: Source, to: str, target: Target) -> Guess:

@@ -51,8 +51,8 @@ from measured.importing.guess import (
 )
 from measured.importing.relations import names_of
 from measured.importing.source import Source
+from measured.recordings.consistency import NOISE
 
-NOISE = 0.02  # of the largest: as far below zero a power meter may read when nothing flows
 ASSUMED_W = 100.0  # heat of a machine of which nobody recorded any
 TIME_CONSTANT = 0.3  # of the record: most tests last three time constants
 POWERS = {"power": 1.0, "current": 2.0, "share": 1.0}  # of a loss that follows it

@@ -46,6 +46,9 @@ DEGREE = 5  # letters: every second header has one, and no page but the right on
 PAIR = r"[^\W\d]\w*=[^\s=]+(?: [^\s=\d][^\s=]*(?!\S))?"  # of a line that a program logged
 LOGGED = re.compile(rf"^\[?((?:\d\S*[ T])?\d+:\d\d:[^\s\]]+)(?=[\s\]])[^=\n]*?((?:\s{PAIR})+)\s*$", re.MULTILINE)
 POINT = re.compile(r"^([^\s=,]+(?:,\S+=\S+)?) ([^\s=,]+=\S+?)[iu]? (\d{10,19})(?=\r?$)", re.MULTILINE)  # a,b=c d=5i 17
+HEATERS = {"T": "nozzle", "B": "bed", "C": "chamber"}
+HEATED = r"(T\d?|B|C):\s*([-+.\d]+)\s*/\s*([-+.\d]+)"  # of a 3D printer, and what is wanted
+PRINTER = re.compile(rf"^(?:(\d\S*[ T]\d+:\d\d:\S+)\s)?.*?\b(?={HEATED})", re.MULTILINE)
 TITLE = re.compile(r"(?:.*\.)?_*(?:name|label|channel|signal|title|target)_*")  # of a signal in JSON: metric.__name__
 UNITS = ("unit", "units")
 # A serial monitor's time before each line, one in brackets, or one with a date and a blank before cells with signs.
@@ -104,18 +107,10 @@ def text_table(file: Path) -> tuple[Layout, Columns, list[str], float | None]:
         start = "".join(itertools.islice(lines, SAMPLE_LINES))[:10_000]
     if 3 * sum(not line.strip() for line in start.splitlines()) > start.count("\n"):  # between every two rows
         lines = lines.edited(lambda line: line if line.strip() else "")
-    if FORTRAN.search(start):
-        lines = lines.edited(lambda line: FORTRAN.sub("E", line))
-    if STAMP.search(start):
-        lines = lines.edited(
-            lambda line: STAMP.sub(lambda m: f"{m[1]} {m[2]}{m[3].zfill(2)}{m[4]}" + "\t" * bool(m[5]), line)
-        )
-    if ARROW.search(start):
-        lines = lines.edited(_parted)
     if len({point[1] for point in POINT.finditer(start)}) == 1:
         lines = lines.edited(lambda line: re.sub(r"[iu]?,", "\t", POINT.sub(r"\3,\2", line)))
-    if len(LOGGED.findall(start)) > 9:
-        lines = lines.edited(_logged)
+    for pattern, least, edit in EDITS:
+        lines = lines.edited(edit) if len(pattern.findall(start)) >= least else lines
     first = next((line for line in lines if line.strip()), "")
     if first.lstrip()[:1] in ("{", "[") and (table := _objects("".join(lines))):
         return *table, notes, None
@@ -145,9 +140,10 @@ def text_table(file: Path) -> tuple[Layout, Columns, list[str], float | None]:
     if not any(plan.names):  # names parted by another sign than the readings, or by one blank where those have several
         lines_over = [bare for line in head[: plan.first] if (bare := line.strip("#%/ \n"))]
         others = (split_cells([line], s)[0] for line in lines_over for s in (*DELIMITERS, " "))
-        plan = replace(plan, names=next((tuple(o) for o in others if len(o) == plan.width and all(o)), plan.names))
+        names = next((tuple(o) for o in others if len(o) == plan.width and all(o)), plan.names)
+        plan = replace(plan, names=names, units=plan.units if names != plan.units else ("",) * plan.width)
     interval_s = _interval("".join(itertools.islice(rows, plan.first)))
-    least, short = _whole(cells[plan.first :] if rows is lines and sign in DELIMITERS else [])
+    least, short = _whole(cells[plan.first :] if rows is lines and sign in DELIMITERS else [], any(plan.names))
     notes += [f"{file.name}: {short}"] * bool(short)
     columns = _plain(file, rows, sign, plan, least)
     if columns is None:
@@ -171,6 +167,23 @@ def _parted(line: str) -> str:
 def _logged(line: str) -> str:
     """The cells of a line that a program logged."""
     return "".join("\t".join([time, *re.findall(PAIR, pairs)]) + "\n" for time, pairs in LOGGED.findall(line))
+
+
+def _answered(line: str) -> str:
+    """The cells of a line with which a printer says how warm it is; "" for any other."""
+    match = PRINTER.search(line)
+    parts = [(f"{HEATERS[n[0]]} {n[1:]}".strip(), read, target) for n, read, target in re.findall(HEATED, line)]
+    pairs = [f"{name} temperature:{read}\t{name} set:{target}" for name, read, target in parts]
+    return "\t".join([*filter(None, [match[1]]), *pairs]) + "\n" if match else ""
+
+
+EDITS: tuple[tuple[re.Pattern[str], int, Callable[[str], str]], ...] = (  # how often it is in the first lines
+    (FORTRAN, 1, lambda line: FORTRAN.sub("E", line)),
+    (STAMP, 1, lambda line: STAMP.sub(lambda m: f"{m[1]} {m[2]}{m[3].zfill(2)}{m[4]}" + "\t" * bool(m[5]), line)),
+    (ARROW, 1, _parted),
+    (LOGGED, 10, _logged),
+    (PRINTER, 3, _answered),
+)
 
 
 def _objects(text: str) -> tuple[Layout, Columns] | None:
@@ -253,14 +266,15 @@ def _interval(preamble: str) -> float | None:
     return step if step > 0 else None
 
 
-def _whole(rows: Sequence[Sequence[str]]) -> tuple[int, str]:
+def _whole(rows: Sequence[Sequence[str]], has_names: bool) -> tuple[int, str]:
     """The least cells of a row that is read, and a doubt: where few rows have fewer than the rest, a reading is
-    missing and those behind it stand under other names."""
+    missing and those behind it stand under other names; where many have, without names nobody knows which."""
     widths = Counter(len(row) for row in rows if any(row))
-    usual = max(widths, key=lambda n: widths[n], default=0)
+    usual = max(widths, key=lambda n: (widths[n], n), default=0)
     short = sum(count for n, count in widths.items() if n < usual)
     if short > FEW_SHORT * widths.total():
-        return 0, ""
+        unequal = f"rows have {min(widths)} to {max(widths)} cells, so that a column may hold several signals"
+        return 0, unequal * (not has_names)
     return usual * bool(short), f"{short} rows have fewer cells than the others: left out" * bool(short)
 
 

@@ -37,11 +37,8 @@ def _boundaries(sheet: Sheet, network: Network) -> None:
     for name in twice([*places, *sheet.boundaries]):
         columns = [f"[columns.{c.name}]" for c in sheet.columns if c.is_temperature and c.place == name]
         columns += ["[boundaries]"] if name in sheet.boundaries else []
-        raise InputError(
-            f"boundary '{name}' is given by {' and by '.join(columns)}",
-            sheet.where,
-            "one of them: use = false, or delete the constant",
-        )
+        what = f"boundary '{name}' is given by {' and by '.join(columns)}"
+        raise InputError(what, sheet.where, "one of them: use = false, or delete the constant")
 
 
 def _unread(sheet: Sheet, network: Network) -> Iterator[str]:
@@ -82,11 +79,8 @@ def checked_heat(
         if lowest < 0.0 and is_amount(network, name):
             where = _cell(columns[name], samples) if name in columns else f"{sheet.where} [inputs] {name}"
             if lowest < -NOISE * float(np.nanmax(np.abs(read))):
-                raise InputError(
-                    f"{lowest:g} is negative, and the loss that reads '{name}' would heat by it",
-                    where,
-                    "a power that is not negative: is a clamp reversed?",
-                )
+                what = f"{lowest:g} is negative, and the loss that reads '{name}' would heat by it"
+                raise InputError(what, where, "a power that is not negative: is a clamp reversed?")
             out[name] = np.maximum(values, 0.0)
             notes.append(f"{where}: readings down to {lowest:.3g} are taken as 0")
     return out, notes

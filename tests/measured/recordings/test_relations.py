@@ -6,11 +6,12 @@ import numpy as np
 import pytest
 from scipy.signal import lfilter
 
+from geom.errors import InputError
 from measured.headers.cells import split_unit
-from measured.importing.aligned import Recording, shift
+from measured.importing.aligned import Recording, common, shift
 from measured.importing.aloud import first_lines, short_lines
 from measured.importing.case_files import read_runs
-from measured.importing.draft import Draft
+from measured.importing.draft import Draft, sample_of
 from measured.importing.guess import guesses
 from measured.importing.relations import functional_relations, is_like_temperature, is_product, misfit
 from measured.importing.starter import heating
@@ -349,3 +350,95 @@ def test_remarks_that_come_again_between_rows(tmp_path):
     [(clock, read)] = runs_of_text(tmp_path, "\n".join(["# run of a bench", "t [s],T_winding [°C]", *lines]))
     assert clock.seconds == pytest.approx(K)
     assert read["T_winding [°C]"].place
+
+
+@pytest.mark.parametrize(
+    ("name", "other", "quantity"),
+    [
+        ("PumpRpm", "CoolantTemp", "flow_share"),
+        ("PumpRpm", "T_case", "speed"),
+        ("fan_rpm", "T_case", "flow_share"),
+        ("motor pump rpm", "CoolantTemp", "speed"),
+    ],
+)
+def test_a_pump_beside_a_coolant_makes_it_flow(tmp_path, name, other, quantity):
+    """Elsewhere it may be what is tested."""
+    read = told(tmp_path, f"t [s],T_winding,{other},{name}", K, WARM, 20 + 0.1 * K + np.cos(K), 600 + LEVEL)
+    assert read[name][0] == quantity
+
+
+@pytest.mark.parametrize("name", ["erpm", "eRPM", "motor_erpm"])
+def test_an_electrical_speed_is_doubted(tmp_path, name):
+    rows = [f"{t:g},{w:.2f},{4000 + e:g}" for t, w, e in zip(K, WARM, LEVEL)]
+    [(_, read)] = runs_of_text(tmp_path, "\n".join([f"t [s],T_motor,{name}", *rows]))
+    assert read[name].feeds == "speed_rpm"
+    assert read[name].doubt == "electrical: as of one pole pair, in rpm"
+
+
+@pytest.mark.parametrize(("wanted", "quantity"), [("setpoint", "share"), ("humidity", "")])
+def test_the_output_beside_a_set_point_heats(tmp_path, wanted, quantity):
+    read = told(tmp_path, f"t [s],temperature,{wanted},output", K, WARM, 0 * K + 90, LEVEL)
+    assert read["output"][0] == quantity
+
+
+def test_numbers_of_thermocouples_are_no_temperature(tmp_path):
+    rows = [f"{k},{k + 1:03d},{w:.2f}" for k, w in enumerate(WARM)]
+    [(_, read)] = runs_of_text(tmp_path, "\n".join(["t [s],TC,T_winding", *rows]))
+    assert read["TC"].doubt == "counts the rows"
+
+
+def test_units_under_a_first_line_that_begins_with_a_date(tmp_path):
+    """As a program writes it that ends no line behind its date."""
+    rows = [f"{t:g}, {1000 * e:g}, {w:.2f}" for t, e, w in zip(K, LEVEL, WARM)]
+    text = "\n".join(["2024-04-22 16:10:29.5Time, Input current, Motor", "s, mA, Deg C", *rows])
+    [(_, read)] = runs_of_text(tmp_path, text)
+    assert [(g.quantity, g.unit) for g in read.values()] == [("current", "mA"), ("temperature", "degC")]
+
+
+def test_rows_that_grow_without_names_are_doubted(tmp_path):
+    lines = [f"{5 * k},{w:.2f},{w + 3:.2f}{',7.5,20.1' * (1 + k // 30)}" for k, w in enumerate(WARM)]
+    (tmp_path / "a.csv").write_text("\n".join(lines))
+    notes = read_runs(tmp_path / "a.csv")[0][0].notes
+    assert any("rows have 5 to 7 cells, so that a column may hold several signals" in note for note in notes)
+
+
+def test_a_printer_says_how_warm_it_is_between_other_lines(tmp_path):
+    """Its log may have instants, or none; what is wanted is no reading."""
+    for stamp, clocks in (("2024-04-22 12:00:{:02d},123 - Recv: ", 59.0), ("", 59.0)):
+        lines = [
+            f"{stamp.format(k)}ok T:{w:.2f} /60.00 B:{w - 5:.2f} /40.00 @:127\n{stamp.format(k)}M105"
+            for k, w in enumerate(WARM)
+        ]
+        [(clock, read)] = runs_of_text(tmp_path, "\n".join(["start", "echo:Marlin 1.1.9", *lines]))
+        assert clock.end_s == pytest.approx(clocks)
+        assert bool(clock.doubt) == (not stamp)
+        assert {c for c, g in read.items() if g.place} == {"nozzle temperature", "bed temperature"}
+
+
+@pytest.mark.parametrize(("step", "least"), [(1e-4, 1e-3), (0.5, 0.5)])
+def test_rows_faster_than_an_analysis_are_averaged(tmp_path, step, least):
+    one = Recording(*read_runs(written(tmp_path, step))[0], [])
+    assert sample_of([Draft("a", (one,))]) == least
+
+
+def test_a_test_shorter_than_a_step_is_refused(tmp_path):
+    one = Recording(*read_runs(written(tmp_path, 1e-7))[0], [])
+    with pytest.raises(InputError, match="too short to see a machine warm"):
+        sample_of([Draft("a", (one,))])
+
+
+def written(folder, step):
+    file = folder / "a.csv"
+    file.write_text("\n".join(["t [s],T_winding", *(f"{step * k:.8f},{w:.2f}" for k, w in enumerate(WARM))]))
+    return file
+
+
+def test_a_test_begins_with_the_first_reading_of_a_part(tmp_path):
+    """Not where its recorder was switched on."""
+    rows = [f"{t:g},{f'{w:.2f}' if t > 9 else ''},{e:g}" for t, w, e in zip(K, WARM, LEVEL)]
+    (tmp_path / "a.csv").write_text("\n".join(["t [s],T_winding,P_loss [W]", *rows]))
+    runs = read_runs(tmp_path / "a.csv")
+    [(source, clock)] = runs
+    one = Recording(source, clock, guesses(source, clock.columns, first_model(runs, {}).target))
+    assert common([one], (0.0, None))[0] == (10.0, 59.0)
+    assert common([one], (20.0, 40.0)) == ((20.0, 40.0), ())
