@@ -6,8 +6,6 @@ that predicts better, and, of a model that leaves more than its uncertainty, by 
 contradicted by a refit that is worse in most tests.
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 

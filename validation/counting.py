@@ -1,7 +1,5 @@
 """Long loops say how far they are, to whoever listens."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
 from contextvars import ContextVar

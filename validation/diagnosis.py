@@ -1,7 +1,5 @@
 """Which effect is missing, how probable, what it is confused with, and which test would decide."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import replace
 from types import MappingProxyType

@@ -1,7 +1,5 @@
 """Where a comparison fails: whiteness, inputs the error follows, and the heat that would mend it."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import dataclass
 

@@ -1,7 +1,5 @@
 """Where the user disagrees: hypotheses that are left out of the question, and odds that differ in this case."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import dataclass
 

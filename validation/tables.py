@@ -3,8 +3,6 @@
 A document that was read back from disk has the same tables as the result itself; every medium shows these.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 

@@ -1,7 +1,5 @@
 """Work side by side: whole pieces of it in threads. The kernel and BLAS free Python's lock."""
 
-from __future__ import annotations
-
 import os
 from collections.abc import Callable, Iterable, Sequence
 from concurrent.futures import ThreadPoolExecutor, as_completed

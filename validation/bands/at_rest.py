@@ -1,7 +1,5 @@
 """How sure a temperature at rest is: the same normal distribution as along a record, without a run."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from functools import cached_property

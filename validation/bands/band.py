@@ -1,7 +1,5 @@
 """The band around predicted temperatures: parameters, model error and inputs, all from the one table of doubt."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import partial

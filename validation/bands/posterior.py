@@ -13,8 +13,6 @@ offset, which no reading shows where there is no sensor. Source: Laplace's appro
 2001.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 

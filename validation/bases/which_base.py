@@ -5,8 +5,6 @@ tests, within the same priors. Tests on other bases hold the body's films, so wh
 deviance: misfit of the readings and strain of the priors.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any

@@ -1,7 +1,5 @@
 """Maximum a posteriori calibration: Levenberg-Marquardt on whitened residuals with Gaussian priors and hard bounds."""
 
-from __future__ import annotations
-
 from collections import deque
 from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass, replace

@@ -1,7 +1,5 @@
 """When inputs stepped: anywhere between two rows of the record, so each step of them is early or late by chance."""
 
-from __future__ import annotations
-
 from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, replace
 

@@ -1,7 +1,5 @@
 """Fitted values with their intervals: what the data fixed, what they could not, and with whom it trades."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import dataclass
 

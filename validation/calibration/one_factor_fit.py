@@ -1,7 +1,5 @@
 """The old way: turn one knob until the curves agree. Shown beside a diagnosis to see what it costs on other tests."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass, replace
 
 import numpy as np

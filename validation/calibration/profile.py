@@ -5,8 +5,6 @@ end is called open. The other unknowns are fitted anew at every point, with the 
 Source: Venzon and Moolgavkar 1988; Raue et al. 2009.
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 

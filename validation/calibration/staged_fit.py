@@ -1,7 +1,5 @@
 """Calibration in stages: an isolating test frees its own parameters, later tests take them as found."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Collection, Sequence
 from dataclasses import dataclass, field, replace
 from fnmatch import fnmatchcase

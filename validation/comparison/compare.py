@@ -1,7 +1,5 @@
 """The model against each test: error per sensor against the uncertainty of reading, inputs and arithmetic."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 

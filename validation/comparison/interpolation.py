@@ -5,8 +5,6 @@ Readings with noise then tell the error at any other place: simple kriging (Math
 regression with the covariance D D' (Rasmussen and Williams 2006, eq. 2.22 to 2.24).
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

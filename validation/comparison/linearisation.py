@@ -1,7 +1,5 @@
 """Residuals and Jacobians of all tests, channel by channel, averaged to a few hundred instants."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass
 

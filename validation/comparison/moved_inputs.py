@@ -1,7 +1,5 @@
 """What a record's inputs and boundaries may be off by, one at a time."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from dataclasses import replace
 

@@ -3,8 +3,6 @@
 Long tests are looked at in stretches, so that their tangents are never in memory as a whole.
 """
 
-from __future__ import annotations
-
 from collections import deque
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace

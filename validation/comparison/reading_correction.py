@@ -9,8 +9,6 @@ the small network's error in what the parameters change.
 Source: additive corrections between models of two fidelities, Kennedy and O'Hagan 2000, Biometrika 87, 1.
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 

@@ -4,8 +4,6 @@ A residual that is not white has something left to explain; one that follows an 
 Sources: Ljung and Box 1978; Bartlett 1955 (cumulated periodogram); Ljung 1999, 16.6 (independence of past inputs).
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 

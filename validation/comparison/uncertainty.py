@@ -7,8 +7,6 @@ condensation and time steps where there is one, else what the integrator leaves.
 Source: ASME V&V 20-2009, chapters 3 and 6; JCGM 100 (expanded uncertainty).
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from itertools import chain

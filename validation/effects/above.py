@@ -1,7 +1,5 @@
 """A declared loss or film that is off where an input is large: a correction to its law, smooth in that input."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Mapping
 from dataclasses import dataclass

@@ -1,7 +1,5 @@
 """What an effect is: one small frozen object that adds zero-amplitude physics to a network."""
 
-from __future__ import annotations
-
 from abc import ABC, abstractmethod
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace

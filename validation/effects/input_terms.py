@@ -1,7 +1,5 @@
 """Heat that follows an input as nothing declared does: a loss at one place, a conductance between two."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace

@@ -1,7 +1,5 @@
 """The catalogue: every effect at every place of a network where it can sit, ours and other people's."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
 from importlib import import_module

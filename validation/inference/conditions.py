@@ -5,8 +5,6 @@ all others. Their prior is a share of PRIOR["condition"]: half for whole tests, 
 which test, and when. What can hold for a while: films, flows, inputs, boundaries, mounting; never masses or joints.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from itertools import combinations

@@ -5,8 +5,6 @@ model error in account. What must differ by many standard deviations although no
 conditions differed. Source: Chow 1960 (equal coefficients in two samples), here with priors.
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 

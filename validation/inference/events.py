@@ -5,8 +5,6 @@ machine, so that by tangents of a model without it the ends are off by some samp
 effect for a little longer, which is linear whatever the size.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from math import floor, log10

@@ -3,8 +3,6 @@
 See `validation.comparison.reading_correction`; `fidelity_error` says how much is lost away from there.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import replace
 

@@ -5,8 +5,6 @@ heat last for a while within a test, or follow smoothly what the machine does, i
 Source: Sarkka, Alvarez and Lawrence 2019 (latent force models); Rasmussen and Williams 2006, 4.2 and 5.4.
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property

@@ -4,8 +4,6 @@ An answer is wrong with the probability of the table's line "answer"; the inform
 information between it and the hypotheses, H(answer) - H(wrong). Source: Lindley 1956.
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 

@@ -1,7 +1,5 @@
 """The evidence of what carries weight without linearisation: refitted, with Laplace's integral at its own optimum."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Collection, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import replace

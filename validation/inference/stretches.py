@@ -6,8 +6,6 @@ both of its ends. Change points by Killick, Fearnhead and Eckley 2012 (PELT), by
 2020).
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property

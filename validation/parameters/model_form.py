@@ -6,8 +6,6 @@ follows, one for the temperature difference of free convection, and the share of
 They are neutral at zero (shares at one). An effect that was added brings its exponents along as well.
 """
 
-from __future__ import annotations
-
 from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 

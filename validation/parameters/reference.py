@@ -4,8 +4,6 @@ An exponent turns its law about the level of its inputs. Were that looked up in 
 another model wherever another test is recorded. So it is determined when the model is fitted, and stored with it.
 """
 
-from __future__ import annotations
-
 from collections.abc import Collection, Mapping, Sequence
 from math import fsum
 

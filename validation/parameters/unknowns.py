@@ -1,7 +1,5 @@
 """The unknowns of a fit: their coordinates, priors and bounds, and the nuisances every measurement brings along."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, replace

@@ -1,7 +1,5 @@
 """Candidate tests: those an engineer can be asked for, each made from a test at hand."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass, replace
 

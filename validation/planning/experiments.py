@@ -1,7 +1,5 @@
 """How far the candidate tests would set rivals apart."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Mapping
 
 from geom.errors import ThermoscopeError

@@ -10,8 +10,6 @@ hot even without current is none to ask for. A machine without currents has noth
 they are.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import partial

@@ -4,8 +4,6 @@ By tangents the wrong one of two would fit worse by a^2 V_kk (1 - c_kl^2); for t
 that one candidate foretells, explained by another that is fitted anew.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, replace

@@ -1,7 +1,5 @@
 """Where one more thermocouple would set rivals apart best, in the tests as they were driven."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
 

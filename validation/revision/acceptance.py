@@ -6,8 +6,6 @@ times under the noise of the model without the step, and error, of those that fo
 Held-out tests have no say.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass, replace
 from types import MappingProxyType

@@ -1,7 +1,5 @@
 """From a model that disagrees to one that does not: diagnose, choose, add, again; with every step's errors kept."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from itertools import pairwise

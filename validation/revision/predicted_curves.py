@@ -1,7 +1,5 @@
 """What each hypothesis predicts for a planned test: the model as it is, and with one effect more, calibrated again."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from itertools import combinations

@@ -4,8 +4,6 @@ Its law and size are those that other tests gave it, and it lasts about as long 
 stretch itself is not counted any more; what the event leaves behind is, and has to be predicted much better with it.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 

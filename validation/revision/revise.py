@@ -1,7 +1,5 @@
 """Add an effect, take it out, calibrate: a new model and a report of what it did to the error of every test."""
 
-from __future__ import annotations
-
 from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from math import isfinite, sqrt

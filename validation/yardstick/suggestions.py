@@ -1,7 +1,5 @@
 """What a free network knows and a declared one lacks: place, law, start; in words and as effects of the catalogue."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 

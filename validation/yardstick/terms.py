@@ -1,7 +1,5 @@
 """What a free network needs: which links carry heat, which inputs they follow, which inputs heat."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 

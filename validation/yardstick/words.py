@@ -1,7 +1,5 @@
 """What the plain models say of the one at hand, in a sentence."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from validation.comparison.compare import ChannelError, Comparison, pooled

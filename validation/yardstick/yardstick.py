@@ -4,8 +4,6 @@ What may be fitted teaches them; what is held out is predicted by them once and 
 powers, ridge) are made by leaving out each test in turn, or each third of the only one.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import partial, wraps
