@@ -5,13 +5,10 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass
 from html import escape
-from typing import TYPE_CHECKING
 
+from geom.description.machine import Machine
 from geom.drawings.views import Views, fill, middle_level
 from scripts.dimensions import counts, diameters, lengths
-
-if TYPE_CHECKING:
-    from geom.description.machine import Machine
 
 mm = 1e3
 _THIN = 'stroke="#777" stroke-width="0.5"'

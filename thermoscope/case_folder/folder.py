@@ -26,7 +26,8 @@ from thermoscope.case_folder.quantities import with_quantities
 from thermoscope.case_folder.recording_checks import Finding, Patient
 from thermoscope.case_folder.settings import Entry, Settings, read_settings
 from validation.counting import counted
-from validation.parameters.unknowns import case_reference, matching, standing, working
+from validation.effects import effect
+from validation.parameters.unknowns import case_reference, matching, scene_of, standing, working
 
 if TYPE_CHECKING:
     from geom import Machine
@@ -305,8 +306,6 @@ def load_machine_file(path: Path) -> Machine:
 def _checked(case: Case, history: History, settings: Settings) -> Case:
     """The model's effects can sit where model.toml has them, its values belong to parameters, as what tests free."""
     from validation.calibration.staged_fit import fit_stages
-    from validation.effects import effect
-    from validation.parameters.unknowns import scene_of
 
     where = f"{settings.model_file} revision {history.last.number}"
     try:

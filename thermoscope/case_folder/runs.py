@@ -28,6 +28,7 @@ from thermoscope.case_folder.folder import Folder
 from thermoscope.case_folder.history import History, Revision
 from validation.comparison.compare import physical
 from validation.comparison.predict import heat_model, predict, record
+from validation.effects import effect
 from validation.effects.during import During
 from validation.parameters.unknowns import effects_of, scene_of, standing, to_value, value_words, working
 from validation.threads import side_by_side
@@ -218,8 +219,6 @@ def steps(folder: Folder) -> list[dict[str, Any]]:
 
 def added_words(case: Case, names: Iterable[str]) -> str:
     """Effects as an engineer says them: "forced convection by vehicle wind at flange.right"."""
-    from validation.effects import effect
-
     return " and ".join(effect(name, scene_of(case)).statement for name in names)
 
 

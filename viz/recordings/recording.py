@@ -11,13 +11,14 @@ from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from itertools import cycle
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 import rerun as rr
 
 from geom.arrays import Array
 from geom.errors import InputError
+from measured.case import Channel
 from viz.colours import BLUE, GREEN, LIGHT, ORANGE, PURPLE, SKY, VERMILION, decimals, heat, marks, rounded
 from viz.data import Comparison, Curve, Sensor, short
 from viz.figures.errors import PALE, error_paths
@@ -27,9 +28,6 @@ from viz.rendering import scene
 from viz.rendering.cut import QUARTER, Surface, Wedge, cut_away
 from viz.rendering.ghost import covered, obstacle
 from viz.rendering.nodes import SplitMesh, on_nodes
-
-if TYPE_CHECKING:
-    from measured.case import Channel
 
 MARKED, MARK = re.compile(r"([^\w\s])"), r"\\\1"  # signs that Markdown could read, each taken as it is
 TIME, REVISION = "test_time", "revision"

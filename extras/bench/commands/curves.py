@@ -9,6 +9,7 @@ from typing import Annotated, Any
 
 import typer
 
+from extras.bench.measuring.curves import curves as found_in
 from extras.bench.measuring.drift import drift
 from thermoscope import InputError, plugin as th
 
@@ -25,8 +26,6 @@ def curves(
 
     Exit code 1 if the rule fails, equal tests differ, or the later test is not equal to the earlier one.
     """
-    from extras.bench.measuring.curves import curves as found_in
-
     if against is not None:
         return show_drift(case, test, against, out, json)
     if test or out:

@@ -21,6 +21,7 @@ from geom.text import counted
 from lumped.model.quantities import INPUTS, USUAL
 from lumped.model.sites import ASSUMED
 from lumped.schemas.reader import suggestion
+from measured.case import Case, Model as CaseModel
 from measured.importing.aligned import Recording, common, grouped, longest_part, shift
 from measured.importing.aloud import first_lines, short_lines
 from measured.importing.case_files import check_new_folder, folder_whole, read_runs, set_aside, write_case
@@ -272,7 +273,6 @@ def save_case(folder: Path, model: Model, drafts: list[Draft], tell: Progress) -
 
     drafts : is empty afterwards: a large recording need not be there twice
     """
-    from measured.case import Case, Model as CaseModel
     from measured.recordings.readings import read_test
     from thermoscope.case_folder.doctor import examined
     from thermoscope.case_folder.folder import patient_of

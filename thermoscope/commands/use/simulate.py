@@ -22,6 +22,7 @@ from lumped.integration.audit import Audit, audit
 from lumped.integration.runaway import checked_run
 from lumped.integration.simulate import Record, simulate as integrated
 from lumped.model.network import Network, Row
+from measured.sensors.operators import observe, setting
 from thermoscope.bands import bands_requested, documents, posterior_of, predicted_bands
 from thermoscope.case_folder.cycle import Cycle, find_cycle, load_cycle
 from thermoscope.case_folder.folder import Folder
@@ -32,14 +33,15 @@ from thermoscope.console.options import Case, Json, Out, Sure
 from thermoscope.console.summary import Summary
 from thermoscope.console.terminal import Progress, give, notes, progress
 from validation.bands import Bands, ParameterPosterior
+from validation.comparison.error_budget import error_budgets
+from validation.comparison.predict import record, thermal
+from validation.parameters.unknowns import standing
 
 MISMATCH = 0.01  # of all losses: parabolas miss a hundredth of that; more means that heat went astray
 
 
 def readings(network: Network, folder: Folder, name: str, record: Record, T: Array) -> Array:
     """From the temperatures T (n_time, n_sensor) at the sensors, in the order of `sensors`."""
-    from measured.sensors.operators import observe, setting
-
     if not folder.case.tests:
         return T
     channels = tuple(replace(c, y=np.full(record.time.size, np.nan)) for c in sensors(folder).values())
@@ -88,17 +90,12 @@ def _out(folder: Folder) -> Path:
 
 def _model(folder: Folder) -> tuple[Network, dict[str, float]]:
     """The network with the effects added, and the values of the parameters that act on heat."""
-    from validation.comparison.predict import thermal
-    from validation.parameters.unknowns import standing
-
     network = standing(folder.case)
     mine = {p.name for p in thermal(network).parameters}
     return network, {k: v for k, v in folder.case.model.values.items() if k in mine}
 
 
 def _cycles(folder: Folder, network: Network, cycle: str | None) -> Iterable[Cycle]:
-    from validation.comparison.predict import record
-
     if cycle is None and not folder.case.tests:
         raise InputError("nothing to run", str(folder.settings.path), "--cycle NAME, or [tests.NAME] in case.toml")
     if cycle is None:
@@ -119,9 +116,6 @@ def _ran(
     posterior: ParameterPosterior | None,
 ) -> dict[str, Any]:
     tell(f"running {cycle.name}")
-    from validation.comparison.error_budget import error_budgets
-    from validation.comparison.predict import thermal
-
     network = cycle.on(network)
     rows, record, whole = named_rows(network, folder), cycle.record, network
     network = thermal(network)
