@@ -142,7 +142,7 @@ def write(out: Path, name: str, loaded: Course, cooling: Course, draws: Draws) -
     kept = (cooling.time >= 30.0) & (cooling.time <= 330.0)
     hot = pm_meters.read("ohm", cooling.ohm[kept], f"{name}.hot", draws)
     sheet = pm_files.sheet(name, plan.base, plan.current, cold, float(air[-1]))
-    pm_files.write_sheet(out / f"{name}.toml", sheet)
+    (out / f"{name}.toml").write_text(tomlkit.dumps(sheet), encoding="utf-8")
     after = [f"{t:.0f},{R:.4g}" for t, R in zip(cooling.time[kept], hot)]
     (out / f"{name}-cooling.csv").write_text("\n".join(["time_s,R_winding_ohm", *after]) + "\n", encoding="utf-8")
     return cold

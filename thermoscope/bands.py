@@ -56,16 +56,9 @@ def _from_cache(folder: Folder, file: Path) -> ParameterPosterior:
     with np.load(file) as archive:
         names, tests = json.loads(str(archive["said"]))
         bare = replace(folder.case, model=replace(folder.case.model, revision=0))
-        covariance, offset = archive["covariance"], archive["offset"]
+        arrays = {name: archive[name] for name in ("covariance", "offset")}
     read = rows_read([t for t in folder.case.tests if t.name in tests])
-    return replace(
-        parameter_posterior(bare),
-        names=tuple(names),
-        covariance=covariance,
-        fitted=tuple(tests),
-        read=read,
-        offset=offset,
-    )
+    return replace(parameter_posterior(bare), names=tuple(names), fitted=tuple(tests), read=read, **arrays)
 
 
 def predicted_bands(of: ParameterPosterior, name: str, record: Record, rows: Mapping[str, Row]) -> Bands:

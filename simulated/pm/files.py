@@ -3,10 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from pathlib import Path
 from typing import Any
-
-import tomlkit
 
 from simulated.road.files import inline
 
@@ -59,7 +56,3 @@ def _resistance(name: str, cold: Mapping[str, float], ambient_end: float) -> dic
         "meter": inline({"percent": 0.25, "offset": 0.002, "resolution": 0.002, "range": [0.4, 4.0]}),
         "after": inline(after),
     }
-
-
-def write_sheet(path: Path, tables: Mapping[str, Any]) -> None:
-    path.write_text(tomlkit.dumps(dict(tables)), encoding="utf-8")

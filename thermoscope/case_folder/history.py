@@ -126,11 +126,8 @@ def save_history(path: Path, history: History, before: History) -> History:
         standing = load_history(path)
         if standing != before:
             what = f"the model was changed by another tab or command: it is at revision {standing.last.number}, this "
-            raise InputError(
-                f"{what}step began at {before.last.number}",
-                str(path),
-                "the step again (in the workbench 'take over' first)",
-            )
+            what += f"step began at {before.last.number}"
+            raise InputError(what, str(path), "the step again (in the workbench 'take over' first)")
         document, revisions = tomlkit.document(), tomlkit.aot()
         document.add("lines", 0)
         document.add(tomlkit.comment(HEADER))
@@ -163,7 +160,8 @@ def checked_values(revision: Revision, parameters: Iterable[Parameter], where: s
 
 
 def _revision(table: Table) -> Revision:
-    evidence = _inner(table, "evidence")
+    evidence, rmse = _inner(table, "evidence"), _inner(table, "rmse_K")
+    tests = {name: _inner(rmse, name) for name in rmse.data}
     out = Revision(
         int(table.number("number")),
         table.word("action", None, ACTIONS),
@@ -171,7 +169,7 @@ def _revision(table: Table) -> Revision:
         table.word("effect", ""),
         _inner(table, "values").constants("values"),
         _pairs(_inner(table, "intervals")),
-        _before_after(_inner(table, "rmse_K")),
+        {name: (t.number("before"), t.number("after")) for name, t in tests.items()},
         table.word("why", ""),
         {k: v if isinstance(v, str) else evidence.number(k, of="value") for k, v in evidence.data.items()},
         _answers(_inner(table, "answers")),
@@ -209,15 +207,9 @@ def _reference(table: Table) -> Reference | None:
 
 
 def _signal(table: Table) -> SignalReference:
-    low, high = table.number("low"), table.number("high")
-    out = SignalReference(
-        table.number("level"),
-        low,
-        high,
-        _optional(table, "at_load"),
-        table.word("quantity", ""),
-        table.flag("machine", False),
-    )
+    level, low, high = (table.number(key) for key in ("level", "low", "high"))
+    at_load, quantity = _optional(table, "at_load"), table.word("quantity", "")
+    out = SignalReference(level, low, high, at_load, quantity, table.flag("machine", False))
     table.close()
     return out
 
@@ -250,8 +242,3 @@ def _pairs(table: Table) -> dict[str, Pair]:
             raise table.error(f"{name} = {list(pair)} is not an interval", "[low, high]")
         out[name] = (pair[0], pair[1])
     return out
-
-
-def _before_after(table: Table) -> dict[str, Pair]:
-    tests = {name: _inner(table, name) for name in table.data}
-    return {name: (t.number("before"), t.number("after")) for name, t in tests.items()}

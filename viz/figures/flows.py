@@ -129,7 +129,9 @@ def sankey_of_losses(heat: Heat, *, title: str = "", png: str | Path | None = No
         raise InputError("no losses to draw", "sankey", "a machine that is running")
     figure, (ax,) = paper.subplots(8.4, 4.4)
     _side(ax, left, 0.0, 0.46, dict.fromkeys(left, VERMILION) | {COOLS: ORANGE}, total)
-    _side(ax, right, 1.0, 0.54, {k: colour_of(k, heat) for k in right}, total)
+    streams = {stream.partition(":")[0] for stream in heat.streams}  # darker than what faces give up
+    shades = {k: BLUE if k in streams else SKY for k in right} | {WARMS: ORANGE, ELSEWHERE: LIGHT.faint}
+    _side(ax, right, 1.0, 0.54, shades, total)
     ax.fill_between([0.46, 0.54], 0, total, color=LIGHT.ink, lw=0)
     ax.text(0.5, total * 1.04, f"{total:.0f} W", ha="center", weight="bold", fontsize=10)
     ax.set(xlim=(-0.32, 1.32), ylim=(-LOW * total, HIGH * total))
@@ -143,12 +145,6 @@ def entries(heat: Heat) -> dict[str, float]:
     losses = {k: v for k, v in sorted(heat.losses.items(), key=lambda kv: -kv[1]) if v > 0}
     least = SMALL * sum(losses.values())
     return losses | ({COOLS: -heat.stored} if -heat.stored >= least else {})
-
-
-def colour_of(name: str, heat: Heat) -> str:
-    """What a stream carries off is darker than what faces give up."""
-    streams = {stream.partition(":")[0] for stream in heat.streams}
-    return {WARMS: ORANGE, ELSEWHERE: LIGHT.faint}.get(name, BLUE if name in streams else SKY)
 
 
 def _side(ax: Axes, parts: dict[str, float], outer: float, inner: float, colours: dict[str, str], total: float) -> None:

@@ -31,7 +31,8 @@ def blueprint(comparison: Comparison, first: str, points: Array, with_history: b
     below: list[Any] = [_over_time("inputs", shares, end)] if comparison.test.inputs else []
     below += [rrb.TextLogView(origin="events", name="events")] if comparison.events else []
     right = rrb.Vertical(curves, _over_time("residual", "measured − model (K)", end), *below)
-    views = rrb.Horizontal(_machine(comparison, points), _bar(), column_shares=[6, 1])
+    scale = rrb.Spatial2DView(origin="scale", name="°C", background=[255, 255, 255])
+    views = rrb.Horizontal(_machine(comparison, points), scale, column_shares=[6, 1])
     left = rrb.Vertical(views, _text("legend", "legend"), row_shares=[5, 1])
     layout: Any = rrb.Horizontal(left, right, column_shares=[3, 2], name="test")
     if with_history:
@@ -76,10 +77,6 @@ def outside_outline(places: Array, machine: Array) -> Array:
     away = at / np.linalg.norm(at, axis=1, keepdims=True)
     far = (outline @ away.T).max(axis=0) + OUT / DISTANCE - np.einsum("ij,ij->i", at, away)
     return np.asarray(places + (far * distance)[:, None] * (away @ np.stack([right, up])))
-
-
-def _bar() -> rrb.Spatial2DView:
-    return rrb.Spatial2DView(origin="scale", name="°C", background=[255, 255, 255])
 
 
 def _machine(comparison: Comparison, points: Array) -> rrb.Spatial3DView:

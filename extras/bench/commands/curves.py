@@ -48,7 +48,9 @@ def curves_summary(document: Mapping[str, Any]) -> th.Summary:
     title = "Within 3 to 4 % of the measured temperature, never above 7 %"
     rule = th.Table.of(title, assemblies, columns, ["beyond 7 %"])
     sentence = f"{fine} of {len(assemblies)} assemblies are within the 3 to 4 % rule."
-    parts: list[th.Table | str] = [rule, _repeats(document), _warming(document), *_doubts(document)]
+    columns = "place | *equal tests=tests | *mean rise (K)=mean | 1 sigma (K)=sd_mean | largest difference=spread"
+    equal = th.Table.of("Equal tests pooled", document["repeats"], f"{columns} | 95 % limit=limit | *repeat", ["no"])
+    parts: list[th.Table | str] = [rule, equal, _warming(document), *_doubts(document)]
     return th.Summary(sentence, parts, "--json FILE has all numbers")
 
 
@@ -57,11 +59,6 @@ def _warming(document: Mapping[str, Any]) -> th.Table:
     rows = [[c["channel"], t["name"], *_row(c)] for t in document["tests"] for c in t["curves"]]
     keep = ["test", "tau_95 (min)", "steady", "rms (K)"]
     return th.Table("Warming: T = a exp(b exp(c t)), 95 % intervals; steady by eq. 9", headers, rows, ["no"], keep)
-
-
-def _repeats(document: Mapping[str, Any]) -> th.Table:
-    columns = "place | *equal tests=tests | *mean rise (K)=mean | 1 sigma (K)=sd_mean | largest difference=spread"
-    return th.Table.of("Equal tests pooled", document["repeats"], f"{columns} | 95 % limit=limit | *repeat", ["no"])
 
 
 def _doubts(document: Mapping[str, Any]) -> list[str]:
@@ -79,15 +76,13 @@ def _row(c: Mapping[str, Any]) -> list[Any]:
     if e is not None:
         sizes = (_with(e[key], e["ci95"][name]) for key, name in (("a_degC", "a"), ("b", "b"), ("c_1_min", "c")))
         fit = [*sizes, e["rmse_K"], e["start_degC"], e["tau95_min"]]
-    return [*fit, *(["-", "-"] if q is None else [_since(q), q["drift_K_h"]])]
+    if q is None:
+        return [*fit, "-", "-"]
+    return [*fit, f"since {q['from_min']:.0f} min" if q["reached"] else "no", q["drift_K_h"]]
 
 
 def _with(value: float, ci: list[float]) -> str:
     return f"{th.cell(value)} ({th.cell(ci[0])} ... {th.cell(ci[1])})"
-
-
-def _since(q: Mapping[str, Any]) -> str:
-    return f"since {q['from_min']:.0f} min" if q["reached"] else "no"
 
 
 def show_drift(case: str, test: str | None, against: str, out: Path | None, json: str | None) -> int:

@@ -81,18 +81,14 @@ def fractional(factors: Sequence[Factor], generators: Mapping[str, str]) -> Desi
     base = full(free)
     columns = {f.letter: base.column(f.letter) for f in free} | {g: base.column(w) for g, w in generators.items()}
     signs = np.column_stack([columns[f.letter] for f in factors])
-    return Design(tuple(factors), signs, _defining([_times(g, w) for g, w in generators.items()]))
+    words = [_times(g, w) for g, w in generators.items()]
+    subsets = (subset for n in range(1, len(words) + 1) for subset in combinations(words, n))
+    return Design(tuple(factors), signs, tuple(reduce(_times, subset) for subset in subsets))
 
 
 def _times(a: str, b: str) -> str:
     """Product of two words: letters that occur twice cancel."""
     return "".join(sorted(set(a) ^ set(b)))
-
-
-def _defining(words: Sequence[str]) -> tuple[str, ...]:
-    """All products of the generators' words."""
-    subsets = (subset for n in range(1, len(words) + 1) for subset in combinations(words, n))
-    return tuple(reduce(_times, subset) for subset in subsets)
 
 
 @dataclass(frozen=True)

@@ -210,6 +210,7 @@ def planned(test: th.Test, bench: Bench, set_point: SetPoint) -> th.Test:
         return np.concatenate([u, np.full(n, u[-1] if value is None else value)])
 
     before = np.unique(np.linspace(0, m, PAST, endpoint=False).astype(int))
+    block = np.floor(8.0 * np.log2(1.0 + future / 240.0))  # they grow as what is looked for gets slower
     return replace(
         test,
         time=np.concatenate([test.time, test.time[-1] + future]),
@@ -217,13 +218,8 @@ def planned(test: th.Test, bench: Bench, set_point: SetPoint) -> th.Test:
         boundaries={k: on(u) for k, u in test.boundaries.items()},
         channels=tuple(replace(c, y=np.zeros(m + n)) for c in test.channels if np.isfinite(c.y[-20:]).any()),
         recorded=None,
-        blocks=np.concatenate([before, m + np.flatnonzero(np.diff(_block(future), prepend=-1))]),
+        blocks=np.concatenate([before, m + np.flatnonzero(np.diff(block, prepend=-1))]),
     )
-
-
-def _block(future: th.Array) -> th.Array:
-    """Which block a planned instant is in: they grow as what is looked for gets slower."""
-    return np.floor(8.0 * np.log2(1.0 + future / 240.0))
 
 
 def _innovations(e: th.Evidence, s: th.Segment, begin: float, error: th.ModelError | None) -> tuple[th.Array, th.Array]:

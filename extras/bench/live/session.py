@@ -55,9 +55,8 @@ class Session:
                 self._safe()
                 self.steering.store.note({"event": "fault", "what": str(fault)})
                 if isinstance(fault, OSError):
-                    raise BenchError(
-                        f"is gone: {fault}", self.source.where, "a line that lasts; the rows so far are kept"
-                    ) from None
+                    right = "a line that lasts; the rows so far are kept"
+                    raise BenchError(f"is gone: {fault}", self.source.where, right) from None
                 raise
 
     def _safe(self) -> None:
@@ -75,9 +74,8 @@ class Session:
                 if time.monotonic() - heard > self.bench.silence_s and self.source.send is None:
                     over = True  # a file that grows no more
                 elif time.monotonic() - heard > self.bench.silence_s:
-                    raise BenchError(
-                        f"no row for {self.bench.silence_s:g} s", self.source.where, "a bench that goes on"
-                    ) from None
+                    what = f"no row for {self.bench.silence_s:g} s"
+                    raise BenchError(what, self.source.where, "a bench that goes on") from None
                 line = ""
             over = over or line is None
             if line and (row := self.parser.row(line)) is not None:

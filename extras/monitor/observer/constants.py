@@ -43,7 +43,8 @@ def with_motion(network: Network, tests: Sequence[th.Test]) -> Network:
 
 def _following(network: Network, p: Parameter, signal: str, level: float) -> Network:
     """The network in which the links of a parameter may grow with a signal."""
-    links = [x for x in network.links if (x.name, 1.0) in p.targets and _still(x)]
+    links = [x for x in network.links if (x.name, 1.0) in p.targets and isinstance(x.law, th.Fixed)]
+    links = [x for x in links if x.kind != "stream" and not x.origin]
     if p.mapping != "log" or not links:
         return network
     names = [f"{x.name} by {signal}" for x in links]
@@ -63,10 +64,6 @@ def _following(network: Network, p: Parameter, signal: str, level: float) -> Net
         0.0,
     )
     return replace(network, parameters=(*network.parameters, new))
-
-
-def _still(link: th.Link) -> bool:
-    return isinstance(link.law, th.Fixed) and link.kind != "stream" and not link.origin
 
 
 @dataclass(frozen=True)

@@ -92,11 +92,9 @@ def recordings(names: Sequence[Path]) -> list[Recording]:
     files = [f for name in names for f in (_inside(name) if name.is_dir() else [name])]
     out = [_recording(file) for file in files]
     if (count := len({r.unit for r in out})) < 3:
-        raise InputError(
-            f"{'one motor is' if count == 1 else f'{count} motors are'} no fleet",
-            ", ".join(map(str, names)),
-            "recordings of three or more, named UNIT.csv or UNIT@2026-03.csv",
-        )
+        what = f"{'one motor is' if count == 1 else f'{count} motors are'} no fleet"
+        right = "recordings of three or more, named UNIT.csv or UNIT@2026-03.csv"
+        raise InputError(what, ", ".join(map(str, names)), right)
     dated = [r for r in out if r.year]
     if dated and len(dated) < len(out):
         bare = next(r for r in out if not r.year)

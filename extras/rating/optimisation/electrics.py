@@ -179,15 +179,13 @@ def _shaft_fan(cowl: th.Cowl, fins: th.Fins, rpm: float, ambient_C: float) -> fl
 def _pump(machine: th.MachineDescription, cooling: th.Cooling, flow: float) -> float:
     """flow (m3/s): jackets that the inlet feeds lie side by side, those that another feeds one after the other."""
     ends = [j for j in cooling.feeds if j not in cooling.feeds.values()]
-    drops = [
-        sum(_drop(machine, j, cooling.share(j) * flow, cooling) for j in (end, *cooling.before(end)) if j != th.INLET)
-        for end in ends
-    ]
+
+    def drop(jacket: str) -> float:
+        mine = cooling.share(jacket) * flow
+        return th.pressure_drop(way_of(machine, jacket), mine, cooling.liquid) if mine > 0.0 else 0.0
+
+    drops = [sum(drop(j) for j in (end, *cooling.before(end)) if j != th.INLET) for end in ends]
     return th.pumping_power(max(drops, default=0.0), flow, EFFICIENCY)
-
-
-def _drop(machine: th.MachineDescription, jacket: str, flow: float, cooling: th.Cooling) -> float:
-    return th.pressure_drop(way_of(machine, jacket), flow, cooling.liquid) if flow > 0.0 else 0.0
 
 
 def way_of(machine: th.MachineDescription, jacket: str) -> Way:

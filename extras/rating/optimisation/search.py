@@ -155,8 +155,5 @@ def infeasible(designs: Sequence[Design]) -> InputError:
     nearest = min(fits, key=lambda d: sum(max(e, 0.0) for e in d.performance.excess.values()))
     excess = {n: e for n, e in nearest.performance.excess.items() if e > 0.0}
     worst = ", ".join(f"'{n}' by {100.0 * e:.3g} %" for n, e in sorted(excess.items(), key=lambda p: -p[1]))
-    return InputError(
-        f"no design of {len(designs)} meets all limits: the nearest one exceeds {worst}",
-        "--limit",
-        "less torque, a higher limit, or wider bounds (--vary NAME=LOW:HIGH)",
-    )
+    what = f"no design of {len(designs)} meets all limits: the nearest one exceeds {worst}"
+    return InputError(what, "--limit", "less torque, a higher limit, or wider bounds (--vary NAME=LOW:HIGH)")

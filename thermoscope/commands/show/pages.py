@@ -172,7 +172,8 @@ def field_pictures(folder: Folder, into: Path) -> dict[str, Path]:
 
 
 def _recording(folder: Folder, into: Path) -> Path:
-    s, cases = Subject(folder, lambda message: None), every_revision(folder)
+    s, revisions = Subject(folder, lambda message: None), (Revision(0, "calibrate"), *folder.history.revisions)
+    cases = [runs.at_revision(folder, r) for r in revisions]  # with each model of its history, as declared first
     return viz.write_recording(
         into / f"{file_stem(s.test.name)}.rrd",
         s.nodes,
@@ -184,11 +185,6 @@ def _recording(folder: Folder, into: Path) -> Path:
         revision_residuals=side_by_side(lambda case: residual_at_end(case, s.test), cases),
         limits=s.limits,
     )
-
-
-def every_revision(folder: Folder) -> list[Case]:
-    """The case with each model of its history, as declared first."""
-    return [runs.at_revision(folder, r) for r in (Revision(0, "calibrate"), *folder.history.revisions)]
 
 
 def residual_at_end(case: Case, test: Test) -> dict[str, float]:

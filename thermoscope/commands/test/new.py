@@ -129,11 +129,8 @@ def places(words: Sequence[str]) -> dict[str, str]:
     """COLUMN=PLACE of --place; a place has no equals sign in it."""
     for word in words:
         if "=" not in word:
-            raise InputError(
-                f"'{word}' is not of the form COLUMN=PLACE",
-                "--place",
-                "such as T_Wickl_U=winding; PLACE may be an input",
-            )
+            right = "such as T_Wickl_U=winding; PLACE may be an input"
+            raise InputError(f"'{word}' is not of the form COLUMN=PLACE", "--place", right)
     return {column.strip(): place.strip() for column, _, place in (word.rpartition("=") for word in words)}
 
 
@@ -169,11 +166,8 @@ def _machine(machine: str, tell: Progress) -> Model:
 
     network = build(load_machine_file(Path(machine)), progress=tell).network
     if any(source.name == ASSUMED for source in network.sources):
-        raise InputError(
-            "declares no losses: nothing says what heated it in the tests",
-            machine,
-            "[losses.NAME] with kind, at and its numbers",
-        )
+        what = "declares no losses: nothing says what heated it in the tests"
+        raise InputError(what, machine, "[losses.NAME] with kind, at and its numbers")
     return Model(network, target_of(network), _put_machine(Path(machine)))
 
 
