@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
+from matplotlib.figure import Figure
 
 from extras.bench.measuring.curves import assembly
 from extras.bench.measuring.warming import eq8, equilibrium, fit_eq8
@@ -134,8 +135,6 @@ def text() -> str:
 
 def pictures() -> dict[str, object]:
     """File name -> matplotlib figure."""
-    from matplotlib.figure import Figure
-
     one, two = Figure((6, 3.4), layout="constrained"), Figure((6, 3.4), layout="constrained")
     amps = np.linspace(0, 511, 100)
     axes = one.subplots()

@@ -5,6 +5,7 @@ from __future__ import annotations
 from functools import cache
 
 import numpy as np
+from matplotlib.figure import Figure
 
 from extras.bench.factors.factorial import Ranking, full, morris, sobol
 from extras.bench.factors.screening import STEP, TABLE_I, WITH_GAP, Screening, screen, varied
@@ -243,39 +244,23 @@ def pictures() -> dict[str, object]:
     from scripts.papers.machines import pictures as drawn
 
     effects = screened(screening().effects["magnets"].document(), title="Effects on the magnets")
-    return {"figure-5.png": _figure_5(), "figure-6.png": _figure_6(), "figure-11.png": effects, **drawn()}
+    R, E = np.geomspace(0.4, 3.0, 25), np.linspace(80.0, 450.0, 25)
+    five = _bands(R, [winding(float(r)) for r in R], "cold resistance (ohm)", "Winding at a rise of 80 K")
+    six = _bands(E, [magnets(float(e), True) for e in E], "cold back-EMF (V)", "Magnets at a rise of 80 K")
+    return {"figure-5.png": five, "figure-6.png": six, "figure-11.png": effects, **drawn()}
 
 
-def _figure_5() -> object:
-    from matplotlib.figure import Figure
-
+def _bands(x: np.ndarray, found: list[PropagatedUncertainty], xlabel: str, title: str) -> Figure:
     figure = Figure((6, 3.4), layout="constrained")
     axes = figure.subplots()
-    R = np.geomspace(0.4, 3.0, 25)
-    found = [winding(float(r)) for r in R]
-    _bands(axes, R, found)
-    axes.set(xlabel="cold resistance (ohm)", ylabel="rise read (K)", title="Winding at a rise of 80 K")
-    return figure
-
-
-def _figure_6() -> object:
-    from matplotlib.figure import Figure
-
-    figure = Figure((6, 3.4), layout="constrained")
-    axes = figure.subplots()
-    E = np.linspace(80.0, 450.0, 25)
-    _bands(axes, E, [magnets(float(e), True) for e in E])
-    axes.set(xlabel="cold back-EMF (V)", ylabel="rise read (K)", title="Magnets at a rise of 80 K")
-    return figure
-
-
-def _bands(axes: object, x: np.ndarray, found: list[PropagatedUncertainty]) -> None:
     for words, pick in (
         ("worst case", lambda s: s.worst),
         ("GUM, 95 %", lambda s: s.first_order),
         ("Monte Carlo, 95 %", lambda s: s.interval),
     ):
         low, high = np.array([pick(s) for s in found]).T
-        (line,) = axes.plot(x, high, label=words, ls="--" if "Monte" in words else "-")  # type: ignore[attr-defined]
-        axes.plot(x, low, color=line.get_color(), ls=line.get_linestyle())  # type: ignore[attr-defined]
-    axes.legend()  # type: ignore[attr-defined]
+        (line,) = axes.plot(x, high, label=words, ls="--" if "Monte" in words else "-")
+        axes.plot(x, low, color=line.get_color(), ls=line.get_linestyle())
+    axes.legend()
+    axes.set(xlabel=xlabel, ylabel="rise read (K)", title=title)
+    return figure

@@ -159,14 +159,8 @@ def _side(ax: Axes, parts: dict[str, float], outer: float, inner: float, colours
         y, at = y - watts, at - watts - gap
     heights = spread_labels(middles[::-1], -LOW * total, HIGH * total, 0.075 * total)[::-1]
     for (name, watts), height in zip(parts.items(), heights, strict=True):
-        ax.text(
-            outer + 0.02 * sign,
-            height,
-            fill(f"{name}\u00a0\u00a0{watts:.0f}\u00a0W", LINE),
-            ha="right" if sign < 0 else "left",
-            va="center",
-            fontsize=9,
-        )
+        words, side = fill(f"{name}\u00a0\u00a0{watts:.0f}\u00a0W", LINE), "right" if sign < 0 else "left"
+        ax.text(outer + 0.02 * sign, height, words, ha=side, va="center", fontsize=9)
 
 
 def _ribbon(ax: Axes, a: tuple[float, float], b: tuple[float, float], width: float, colour: str) -> None:

@@ -82,13 +82,8 @@ def outside_outline(places: Array, machine: Array) -> Array:
 def _machine(comparison: Comparison, points: Array) -> rrb.Spatial3DView:
     middle = (points.min(axis=0) + points.max(axis=0)) / 2
     first = rrb.EyeControls3D(position=eye(points), look_target=middle, eye_up=View().up)
-    return rrb.Spatial3DView(
-        origin="machine",
-        name=f"{comparison.test.name}: temperature",
-        background=[255, 255, 255],
-        line_grid=False,
-        eye_controls=first,
-    )
+    name, white = f"{comparison.test.name}: temperature", [255, 255, 255]
+    return rrb.Spatial3DView(origin="machine", name=name, background=white, line_grid=False, eye_controls=first)
 
 
 def _text(origin: str, name: str) -> rrb.TextDocumentView:

@@ -143,14 +143,9 @@ def _names(
     hidden = covered(obstacle(surface), places, eye(surface.points))
     at = np.where(hidden[:, None], outside_outline(places, surface.points), places)
     visible = np.flatnonzero(non_overlapping(at, surface.points))[:LABELS]
-    labels = rr.Points3D(
-        at[visible],
-        labels=[short(channels[i].name) for i in visible],
-        radii=rr.Radius.ui_points(0.0),
-        show_labels=True,
-        colors=[255, 255, 255],
-    )
-    stream.log("machine/names", labels, static=True)
+    style: dict[str, Any] = {"radii": rr.Radius.ui_points(0.0), "show_labels": True, "colors": [255, 255, 255]}
+    names = rr.Points3D(at[visible], labels=[short(channels[i].name) for i in visible], **style)
+    stream.log("machine/names", names, static=True)
     stubs = [np.stack([places[i], at[i]]) for i in visible if hidden[i]]
     lines = rr.LineStrips3D(stubs, colors=rgba(LIGHT.ink), radii=rr.Radius.ui_points(0.8))
     stream.log("machine/stubs", lines, static=True)
@@ -221,14 +216,8 @@ def colour_bar(stream: rr.RecordingStream, low: float, high: float) -> None:
     at = marks(low, high)
     height = [HIGH * (1 - (m - low) / (high - low)) for m in at]
     words = [f"{m:.{decimals(low, high)}f} °C" for m in at]
-    points = rr.Points2D(
-        [[WIDE + GAP, h] for h in height],
-        labels=words,
-        show_labels=True,
-        radii=rr.Radius.ui_points(0.0),
-        colors=[31, 41, 51],
-    )
-    stream.log("scale/marks", points, static=True)
+    style: dict[str, Any] = {"radii": rr.Radius.ui_points(0.0), "show_labels": True, "colors": [31, 41, 51]}
+    stream.log("scale/marks", rr.Points2D([[WIDE + GAP, h] for h in height], labels=words, **style), static=True)
 
 
 def inputs(stream: rr.RecordingStream, comparison: Comparison, timeline: str) -> None:

@@ -52,17 +52,8 @@ def _following(network: Network, p: Parameter, signal: str, level: float) -> Net
         assert isinstance(link.law, th.Fixed)
         law = th.InputPower(link.law.value, ((signal, level, 1.0),), link.law.temperature)
         network = th.copy_element(network, link, name, law)
-    new = Parameter(
-        f"{LEARNED}{p.name} by {signal}",
-        tuple((n, 1.0) for n in names),
-        0.0,
-        "1",
-        0.0,
-        10.0,
-        p.prior_sd,
-        "amplitude",
-        0.0,
-    )
+    name, targets = f"{LEARNED}{p.name} by {signal}", tuple((n, 1.0) for n in names)
+    new = Parameter(name, targets, 0.0, "1", 0.0, 10.0, p.prior_sd, "amplitude", 0.0)
     return replace(network, parameters=(*network.parameters, new))
 
 

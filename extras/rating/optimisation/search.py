@@ -107,13 +107,9 @@ def _posed(problem: Problem, archive: list[Design], executor: Executor | None) -
 
     class Judged(Posed):
         def __init__(self) -> None:
-            super().__init__(
-                n_var=len(space.variables),
-                n_obj=len(problem.aimed),
-                n_ieq_constr=len(limits),
-                xl=np.array([v.low for v in space.variables]),
-                xu=np.array([v.high for v in space.variables]),
-            )
+            low, high = np.transpose([(v.low, v.high) for v in space.variables])
+            numbers = {"n_var": low.size, "n_obj": len(problem.aimed), "n_ieq_constr": len(limits)}
+            super().__init__(**numbers, xl=low, xu=high)
 
         def _evaluate(self, X: th.Array, out: dict[str, th.Array], *args: Any, **others: Any) -> None:
             designs = judged(problem, X, executor)

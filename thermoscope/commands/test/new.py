@@ -41,7 +41,7 @@ from thermoscope.parts import message as missing_extra
 if TYPE_CHECKING:
     from lumped.model.network import Network
     from thermoscope.case_folder.settings import Settings
-    from viz.figures.columns import Panel
+    from viz.figures.curves import Panel
 
 PICTURE = "columns.png"
 LATEST_S = 1e9  # as [test] from_s in a sheet
@@ -316,7 +316,7 @@ def save_case(folder: Path, model: Model, drafts: list[Draft], tell: Progress) -
 def _draw(draft: Draft, png: Path) -> None:
     """The columns as a picture, a note where nothing can draw."""
     try:
-        from viz.figures.columns import columns
+        from viz.figures.curves import columns
 
         columns(panels(draft), f"{draft.name}: what each column was taken for", png=png)
     except ModuleNotFoundError as fault:
@@ -365,7 +365,7 @@ def _document(draft: Draft, role: str) -> dict[str, Any]:
 
 def panels(draft: Draft) -> list[Panel]:
     """The columns of numbers of a test as the picture wants them."""
-    from viz.figures.columns import POINTS, Panel
+    from viz.figures.curves import POINTS, Panel
 
     out = []
     for r in draft.records:
