@@ -224,8 +224,8 @@ class Steering:
     def apply(self, thought: Thought) -> list[dict[str, float]]:
         """Goes on as thought. Returns set points to send."""
         stop = {"stop": thought.stop} if thought.stop else {}
-        seen = thought.assessment
-        lists = {"odds": [list(o) for o in seen.odds[:5]], "over": list(seen.over), "unseen": list(seen.unseen)}
+        now = thought.assessment
+        lists = {"odds": [list(o) for o in now.odds[:5]], "over": list(now.over), "unseen": list(now.unseen)}
         self.store.note({"event": "odds", "time_s": thought.time, **lists, "left_min": thought.left_min, **stop})
         if thought.stop:
             return self.make_safe()

@@ -56,10 +56,10 @@ def film(
         titles = [title(test, t, w, row) for (t, w), row in zip(when, sensors, strict=True)]
         T, limits = np.concatenate([values for _, values in played.values()]), runs.temperature_range(folder, nodes)
 
-        def drawn(number: int) -> None:
+        def tell_number(number: int) -> None:
             tell(f"drawing picture {number}/{len(T)}")
 
-        animate(nodes, [t for t, _ in when], T, file, titles=titles, sensors=sensors, limits=limits, tell=drawn)
+        animate(nodes, [t for t, _ in when], T, file, titles=titles, sensors=sensors, limits=limits, tell=tell_number)
     give({"case": folder.case.name, "film": str(file)}, target, lambda: Summary(f"{file}"))
     return 0
 
