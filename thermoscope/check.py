@@ -50,12 +50,13 @@ def findings(browsers: Sequence[str] = BROWSERS) -> list[Finding]:
 
     extras = {e: all(find_spec(package) is not None for package in e.packages) for e in EXTRAS.values()}
     rerun = (shutil.which("rerun") or shutil.which("rerun", path=os.path.dirname(sys.executable))) is not None
+    browser = any(shutil.which(name) for name in browsers)
     return [
         *(_finding(f"[{e.name}]", present, e.needed_for, False, e.install) for e, present in extras.items()),
         _finding("off-screen OpenGL", _gl(), "pictures (render, report, demo)", True, COMMAND),
         _finding("rerun viewer", rerun, "opening .rrd recordings", False, "uv pip install rerun-sdk"),
         _finding("Vulkan driver", _vulkan(), "screenshots from the rerun viewer without a display", False, VULKAN),
-        _finding("Chromium", _browser(browsers), "screenshots of the HTML report", False, CHROMIUM),
+        _finding("Chromium", browser, "screenshots of the HTML report", False, CHROMIUM),
     ]
 
 
@@ -78,10 +79,6 @@ def _vulkan() -> bool:
     """A loader and at least one driver; asked in a process of its own, since drivers may crash."""
     process = subprocess.run([sys.executable, "-P", "-c", _INSTANCE], capture_output=True, timeout=60, check=False)
     return process.returncode == 0
-
-
-def _browser(browsers: Sequence[str]) -> bool:
-    return any(shutil.which(name) for name in browsers)
 
 
 _INSTANCE = """

@@ -52,25 +52,17 @@ def warming() -> Section:
     curve = eq8(MINUTES, *PUBLISHED)
     fit = fit_eq8(MINUTES, curve, start_C=20.0)
     noisy = fit_eq8(MINUTES, curve + 0.5 * np.random.default_rng(1).standard_normal(MINUTES.size))
+    rise = f"95 % of the rise {fit.rise_min():.1f} min"
     rows = (
         *(
-            Row(name, f"{p:g}", f"{v:.4g}", f"with 0.5 K of scatter {_ci(noisy.ci95[name])}")
+            Row(name, f"{p:g}", f"{v:.4g}", "with 0.5 K of scatter {:.4g} to {:.4g} (95 %)".format(*noisy.ci95[name]))
             for name, p, v in zip("abc", PUBLISHED, (fit.a, fit.b, fit.c))
         ),
         Row("T(0)", "ambient, 20 degC", f"{fit.start:.1f} degC", fit.warnings[0]),
-        Row(
-            "tau_95, time to 95 % of T_e",
-            "-",
-            f"{fit.time_to_share_min():.1f} min",
-            f"95 % of the rise {fit.rise_min():.1f} min",
-        ),
+        Row("tau_95, time to 95 % of T_e", "-", f"{fit.time_to_share_min():.1f} min", rise),
     )
     words = "T = a exp(b exp(c t)), t in minutes, fitted to the published curve every half minute."
     return Section("Figure 9 and eq. 8: the left flange in forced air", words, rows, picture="eq8.png")
-
-
-def _ci(pair: tuple[float, float]) -> str:
-    return f"{pair[0]:.4g} to {pair[1]:.4g} (95 %)"
 
 
 def settled() -> Section:

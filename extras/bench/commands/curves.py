@@ -74,15 +74,12 @@ def _row(c: Mapping[str, Any]) -> list[Any]:
     e, q = c["eq8"], c["equilibrium"]
     fit: list[Any] = ["-"] * 6
     if e is not None:
-        sizes = (_with(e[key], e["ci95"][name]) for key, name in (("a_degC", "a"), ("b", "b"), ("c_1_min", "c")))
+        values = ((e[key], *e["ci95"][name]) for key, name in (("a_degC", "a"), ("b", "b"), ("c_1_min", "c")))
+        sizes = (f"{value} ({low} ... {high})" for value, low, high in (map(th.cell, row) for row in values))
         fit = [*sizes, e["rmse_K"], e["start_degC"], e["tau95_min"]]
     if q is None:
         return [*fit, "-", "-"]
     return [*fit, f"since {q['from_min']:.0f} min" if q["reached"] else "no", q["drift_K_h"]]
-
-
-def _with(value: float, ci: list[float]) -> str:
-    return f"{th.cell(value)} ({th.cell(ci[0])} ... {th.cell(ci[1])})"
 
 
 def show_drift(case: str, test: str | None, against: str, out: Path | None, json: str | None) -> int:

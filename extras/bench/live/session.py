@@ -90,7 +90,9 @@ class Session:
                 self.tell(words(thought))
                 sent = self.steering.apply(thought)
                 if not self.drive and thought.choice and not thought.stop:
-                    self.tell(f"set {_set_words(self.steering)}, then type done")
+                    rate = {k.name: k.rate_per_s for k in self.steering.bench.knobs}
+                    goal = (f"{n} = {v:g} (at most {rate[n]:g} per s)" for n, v in self.steering.now.items())
+                    self.tell(f"set {', '.join(goal)}, then type done")
                 self._out(sent)
                 if thought.stop:
                     return thought.stop
@@ -104,11 +106,6 @@ class Session:
         for set_point in sent:
             if self.drive:
                 self.source.set(set_point)
-
-
-def _set_words(steering: Steering) -> str:
-    rate = {k.name: k.rate_per_s for k in steering.bench.knobs}
-    return ", ".join(f"{n} = {v:g} (at most {rate[n]:g} per s)" for n, v in steering.now.items())
 
 
 def words(thought: Thought) -> str:

@@ -77,14 +77,9 @@ class Reader:
         inputs = {n: mean(u) for n, u in rows.inputs.items()}
         inputs |= {f"{th.LAW_RUNNING}{test.name}": np.zeros(time.size) for test in self.tests}
         air = {n: mean(u) for n, u in rows.boundaries.items()}
-        return th.Test(
-            recording.unit, "calibrate", time - time[0], inputs, air, tuple(channels), _initial(channels, air)
-        )
-
-
-def _initial(channels: Sequence[th.Channel], air: dict[str, th.Array]) -> dict[str, float]:
-    first = {c.place: float(c.y[np.isfinite(c.y)][0]) for c in channels if np.isfinite(c.y).any()}
-    return first or {name: float(u[0]) for name, u in air.items()}
+        first = {c.place: float(c.y[np.isfinite(c.y)][0]) for c in channels if np.isfinite(c.y).any()}
+        initial = first or {name: float(u[0]) for name, u in air.items()}
+        return th.Test(recording.unit, "calibrate", time - time[0], inputs, air, tuple(channels), initial)
 
 
 def recordings(names: Sequence[Path]) -> list[Recording]:

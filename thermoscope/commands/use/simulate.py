@@ -74,18 +74,14 @@ def simulate(
     with progress() as tell:
         folder = open_case(case, tell, untested=True)
         network, values = _model(folder)
-        into = out or _out(folder)
+        path = folder.settings.path
+        into = out or (Path("out") / path.name if PACKAGE in path.resolve().parents else folder.settings.out)
         posterior = posterior_of(folder, tell) if bands_requested(network, sure) else None
         runs = [_ran(network, values, one, folder, into, tell, posterior) for one in _cycles(folder, network, cycle)]
         circuits = _circuits(folder)
     document = {"case": folder.case.name, "revision": folder.case.model.revision, "runs": runs, "circuits": circuits}
     give(document, target, lambda: simulation_summary(document))
     return 0
-
-
-def _out(folder: Folder) -> Path:
-    inside = PACKAGE in folder.settings.path.resolve().parents
-    return Path("out") / folder.settings.path.name if inside else folder.settings.out
 
 
 def _model(folder: Folder) -> tuple[Network, dict[str, float]]:
