@@ -55,12 +55,9 @@ def export_workbook(case: str, out: Path | None, form: str, target: str | None) 
         content = th.tables(folder)
     where, name = out or folder.settings.out, folder.settings.path.resolve().name
     paths = th.write_csvs(where, content) if form == "csv" else [th.write_xlsx(where / f"{name}.xlsx", content)]
-    document = {
-        "case": folder.case.name,
-        "files": [str(p) for p in paths],
-        "worksheets": [table.title for table in content],
-    }
-    th.give(document, target, lambda: th.Summary(f"{th.counted(len(paths), 'file')} written.", [str(p) for p in paths]))
+    files = [str(path) for path in paths]
+    document = {"case": folder.case.name, "files": files, "worksheets": [table.title for table in content]}
+    th.give(document, target, lambda: th.Summary(f"{th.counted(len(paths), 'file')} written.", files))
     return 0
 
 

@@ -46,10 +46,9 @@ def plan(
         curves = predicted_curves(folder.case, models, test)
         file = out or Path("out") / f"{file_stem(folder.case.name)}-plan.html"
         last = folder.case.tests[-1]
-        write_bench_page(
-            BenchPage(folder.case.name, curves, last.name, schedule(curves.test, last), provenance(), hottest(folder)),
-            file,
-        )
+        steps = schedule(curves.test, last)
+        page = BenchPage(folder.case.name, curves, last.name, steps, provenance(), hottest(folder))
+        write_bench_page(page, file)
     levels = [c.document() for c in curves.currents]
     document = {
         "case": folder.case.name,

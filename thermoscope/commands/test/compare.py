@@ -63,12 +63,8 @@ def _stopped(folder: Folder, so_far: Comparison, called: str) -> int:
 
     document = {**so_far.document(), "error_budget": documents(folder.budgets), **sampling(folder)}
     give(document, None, lambda: comparison_summary(document, called))
-    notes(
-        [
-            f"stopped: {len(so_far.tests)} of {len(folder.case.tests)} tests were compared, and the table holds these; "
-            "nothing was written"
-        ]
-    )
+    share = f"{len(so_far.tests)} of {len(folder.case.tests)} tests"
+    notes([f"stopped: {share} were compared, and the table holds these; nothing was written"])
     return STOPPED
 
 
