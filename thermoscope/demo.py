@@ -220,11 +220,6 @@ def demo_summary(stages: Sequence[Stage], out: Path, seconds: float) -> Summary:
         for s in stages
     ]
     sentence = f"{out / 'report.html'} tells it all. {seconds:.0f} s; * was never used."
-    return Summary(
-        sentence,
-        [
-            Table("Error of all sensors, rms (K)", headers, rows, keep=headers),
-            Table("Error on the right flange alone, rms (K)", headers, flange, keep=headers),
-        ],
-        f"recording {out}/*.rrd; thermoscope show serve {out / CASE}",
-    )
+    errors = {"Error of all sensors, rms (K)": rows, "Error on the right flange alone, rms (K)": flange}
+    tables = [Table(title, headers, of, keep=headers) for title, of in errors.items()]
+    return Summary(sentence, tables, f"recording {out}/*.rrd; thermoscope show serve {out / CASE}")

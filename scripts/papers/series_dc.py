@@ -69,13 +69,9 @@ def settled() -> Section:
     long = np.arange(0.0, 120.5, 0.5)
     found = equilibrium(long, eq8(long, *PUBLISHED), 0.5)
     short = equilibrium(MINUTES, eq8(MINUTES, *PUBLISHED), 0.5)
+    meaning = "zero means: within the thermocouples' 0.5 K"
     rows = (
-        Row(
-            "difference of late readings",
-            "0",
-            "0.5 K or less, 10 min apart",
-            "zero means: within the thermocouples' 0.5 K",
-        ),
+        Row("difference of late readings", "0", "0.5 K or less, 10 min apart", meaning),
         Row("equilibrium since", "-", f"{found.from_min:.0f} min" if found.from_min else "not reached"),
         Row("T_e", f"{PUBLISHED[0]:g} degC", f"{found.T_e:.1f} degC"),
         Row("drift at the end of the hour", "-", f"{short.drift_K_h:.1f} K/h"),

@@ -121,32 +121,18 @@ def screening() -> Screening:
 def figure_11() -> Section:
     found = screening().effects["magnets"]
     step = screening().effects["winding minus magnets"]
-    names = {
-        "convection": "leads",
-        "emissivity": "leads",
-        "base": "leads",
-        "magnetic loss": "raises it",
-        "winding impregnation": "small",
-        "end-winding impregnation": "small",
-        "speed": "small",
-    }
+    small = ("winding impregnation", "end-winding impregnation", "speed")
+    names = {**dict.fromkeys(("convection", "emissivity", "base"), "leads"), "magnetic loss": "raises it"}
+    names |= dict.fromkeys(small, "small")
+    within = f"within Lenth's {found.simultaneous:.1f} K"
+    sizes = {f: found.effects[f.letter] for f in sorted(TABLE_I, key=lambda f: -abs(found.effects[f.letter]))}
     rows = [
-        Row(
-            f.name,
-            names[f.name],
-            f"{found.effects[f.letter]:+.1f} K",
-            "beyond chance" if f.letter in found.active else f"within Lenth's {found.simultaneous:.1f} K",
-        )
-        for f in sorted(TABLE_I, key=lambda f: -abs(found.effects[f.letter]))
+        Row(f.name, names[f.name], f"{size:+.1f} K", "beyond chance" if f.letter in found.active else within)
+        for f, size in sizes.items()
     ]
-    rows += [
-        Row(
-            "winding impregnation on the step winding to magnets",
-            "sets it",
-            f"{step.effects['D']:+.1f} K",
-            f"next: {step.words(step.ranked[1][0])} {step.ranked[1][1]:+.1f} K",
-        )
-    ]
+    name, following = "winding impregnation on the step winding to magnets", step.ranked[1]
+    next_words = f"next: {step.words(following[0])} {following[1]:+.1f} K"
+    rows.append(Row(name, "sets it", f"{step.effects['D']:+.1f} K", next_words))
     largest = {name: e.ranked[0] for name, e in screening().effects.items()}
     table = [("response", "largest effect", "high - low (K)")]
     table += [(name, screening().effects[name].words(w), f"{v:+.1f}") for name, (w, v) in largest.items()]
@@ -186,16 +172,9 @@ def ranked() -> dict[str, tuple[Ranking, Ranking]]:
 def rankings() -> Section:
     head = ("response", "factor", "Morris mu*", "+- 95 %", "Sobol ST", "+- 95 %")
     table = [
-        (
-            name,
-            factor,
-            f"{low.measure[factor]:.3g}",
-            f"{low.conf[factor]:.2g}",
-            f"{high.measure[factor]:.3f}",
-            f"{high.conf[factor]:.3f}",
-        )
+        (name, f, f"{low.measure[f]:.3g}", f"{low.conf[f]:.2g}", f"{high.measure[f]:.3f}", f"{high.conf[f]:.3f}")
         for name, (low, high) in ranked().items()
-        for factor in high.ranked
+        for f in high.ranked
     ]
     runs = next(iter(ranked().values()))
     words = (

@@ -120,12 +120,9 @@ def _sensors(
     channels = [channel for channel in c.channels if channel.name in positions]
     if not channels:
         return
-    dots = rr.Points3D(
-        [positions[channel.name] for channel in channels],
-        labels=[short(channel.name) for channel in channels],
-        radii=rr.Radius.ui_points(5.0),
-        show_labels=False,
-    )
+    names = [channel.name for channel in channels]
+    points, labels = [positions[name] for name in names], [short(name) for name in names]
+    dots = rr.Points3D(points, labels=labels, radii=rr.Radius.ui_points(5.0), show_labels=False)
     stream.log("machine/sensors", dots, static=True)
     _names(stream, sorted(channels, key=lambda channel: -c.rmse(channel) / c.limit_K(channel)), positions, surface)
     residual = np.stack([np.interp(times, c.test.time, c.residual(channel)) for channel in channels], axis=1)

@@ -177,14 +177,9 @@ class Ranking:
         return sorted(self.measure, key=lambda n: -self.measure[n])
 
     def document(self) -> dict[str, Any]:
-        return {
-            "method": self.method,
-            "runs": self.runs,
-            "ranking": [
-                {"factor": n, "measure": self.measure[n], "conf95": self.conf[n], "spread": self.spread[n]}
-                for n in self.ranked
-            ],
-        }
+        columns = {"measure": self.measure, "conf95": self.conf, "spread": self.spread}
+        ranking = [{"factor": n, **{key: of[n] for key, of in columns.items()}} for n in self.ranked]
+        return {"method": self.method, "runs": self.runs, "ranking": ranking}
 
 
 def morris(factors: Sequence[Varied], response: Response, trajectories: int = 10, seed: int = 0) -> Ranking:
