@@ -98,20 +98,13 @@ def coolants() -> Section:
     glycol, air = ethylene_glycol(50.0, 0.5), 1.205 * 1006.0
     rate = 8e-3 / 60 * glycol.rho * glycol.cp
     loss = RATED["voltage"] * RATED["current"] - RATED["power"]
+    heat_words = f"{rate:.0f} W/K: 12.4 kW heats it {loss / rate:.1f} K in one pass"
+    air_words = "turning up the air flow hid convection on the right flange"
+    loop_words = "20 to 80 degC is the loop warming up, not the rise through the jacket"
     rows = (
         Row("138 m3/h of air", "start value", f"{138 / 3600 * air:.0f} W/K in air of 1.2 kg/m3 and 20 degC"),
-        Row(
-            "240 m3/h of air",
-            "after correction",
-            f"{240 / 3600 * air:.0f} W/K",
-            "turning up the air flow hid convection on the right flange",
-        ),
-        Row(
-            "8 l/min of 50/50 glycol",
-            "20 to 80 degC",
-            f"{rate:.0f} W/K: 12.4 kW heats it {loss / rate:.1f} K in one pass",
-            "20 to 80 degC is the loop warming up, not the rise through the jacket",
-        ),
+        Row("240 m3/h of air", "after correction", f"{240 / 3600 * air:.0f} W/K", air_words),
+        Row("8 l/min of 50/50 glycol", "20 to 80 degC", heat_words, loop_words),
     )
     return Section("Section 3: what the coolants can carry", "Heat capacity rates of the stated flows.", rows)
 

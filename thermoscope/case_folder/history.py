@@ -105,10 +105,8 @@ def load_history(path: Path) -> History:
     revisions = tuple(_revision(t) for t in top.listed("revision"))
     lines = path.read_bytes().count(b"\n")
     if top.number("lines", lines) != lines or not revisions:  # the first line says how many: one that is cut off has it
-        raise top.error(
-            f"has {lines} lines, not as many as were written: it was cut off or changed by hand",
-            "the file as thermoscope wrote it, or none: the model as declared",
-        )
+        what = f"has {lines} lines, not as many as were written: it was cut off or changed by hand"
+        raise top.error(what, "the file as thermoscope wrote it, or none: the model as declared")
     top.close()
     if [r.number for r in revisions] != list(range(1, len(revisions) + 1)):
         raise top.error("revisions are not numbered 1, 2, 3, ...", "the file as thermoscope wrote it")

@@ -272,18 +272,9 @@ def parameters(folder: Folder) -> list[dict[str, Any]]:
             continue
         low, high = (max(p.low, min(p.high, to_value(p, s * NORMAL_95 * p.prior_sd))) for s in (-1.0, 1.0))
         a, b = last.intervals[p.name]
-        out.append(
-            {
-                "name": p.name,
-                "words": value_words(p.name),
-                "value": last.values[p.name],
-                "unit": p.unit,
-                "ci95": [a, b],
-                "prior": [p.value, low, high],
-                "of_measurement": of_measurement(p),
-                "identified": b - a < BLIND * (high - low),
-            }
-        )
+        size = {"value": last.values[p.name], "unit": p.unit, "ci95": [a, b], "prior": [p.value, low, high]}
+        kind = {"of_measurement": of_measurement(p), "identified": b - a < BLIND * (high - low)}
+        out.append({"name": p.name, "words": value_words(p.name), **size, **kind})
     return sorted(out, key=effects_first)
 
 

@@ -164,13 +164,11 @@ def temperature_document(
 
 def with_limits(content: Mapping[str, Any], limits: Mapping[str, Mapping[str, float]]) -> dict[str, Any]:
     """The same with the largest errors that count as agreement (K): test -> channel -> limit."""
-    return {
-        **content,
-        "tests": [
-            {**test, "sensors": [{**s, "limit": limits[test["test"]].get(s["channel"])} for s in test["sensors"]]}
-            for test in content["tests"]
-        ],
-    }
+    tests = []
+    for test in content["tests"]:
+        of = limits[test["test"]]
+        tests.append({**test, "sensors": [{**s, "limit": of.get(s["channel"])} for s in test["sensors"]]})
+    return {**content, "tests": tests}
 
 
 def render(content: Mapping[str, Any]) -> str:

@@ -122,13 +122,8 @@ def _named(case: th.MeasuredCase, name: str | None, option: str = "--test") -> t
 def drift_summary(document: Mapping[str, Any]) -> th.Summary:
     """What changed; then both quantities of every sensor."""
     columns = "sensor=place | *quantity | before | after | *difference (%)=percent | *+- 95 %=U95_percent"
-    table = th.Table.of(
-        "At the earlier test's conditions",
-        document["changes"],
-        f"{columns} | uncertainties | channel | *verdict",
-        ["changed"],
-    )
+    columns += " | uncertainties | channel | *verdict"
+    table = th.Table.of("At the earlier test's conditions", document["changes"], columns, ["changed"])
     names = ", ".join(document["left_out"])
-    return th.Summary(
-        document["sentence"], [table, *([f"too few readings, or no rise: {names}"] if names else [])], "--out DIR"
-    )
+    rest = [f"too few readings, or no rise: {names}"] if names else []
+    return th.Summary(document["sentence"], [table, *rest], "--out DIR")

@@ -222,8 +222,5 @@ def assemblies(
 def worst(rows: Sequence[Assembly]) -> Mapping[str, Any]:
     """The summary the paper gives: typical and largest error (%), and whether the model counts as calibrated."""
     errors = [r.percent for r in rows]
-    return {
-        "typical_percent": float(np.median(errors)),
-        "largest_percent": max(errors),
-        "calibrated": all(e <= TOLERANCE for e in errors),
-    }
+    typical, calibrated = float(np.median(errors)), all(e <= TOLERANCE for e in errors)
+    return {"typical_percent": typical, "largest_percent": max(errors), "calibrated": calibrated}
