@@ -114,13 +114,8 @@ class Effects:
 
     def document(self) -> dict[str, Any]:
         rows = [{"effect": e, "words": self.words(e), "value": v, "active": e in self.active} for e, v in self.ranked]
-        return {
-            "response": self.response,
-            "PSE": self.PSE,
-            "margin": self.margin,
-            "simultaneous": self.simultaneous,
-            "effects": rows,
-        }
+        limits = {"PSE": self.PSE, "margin": self.margin, "simultaneous": self.simultaneous}
+        return {"response": self.response, **limits, "effects": rows}
 
     def words(self, letters: str) -> str:
         return " x ".join(self.names[c] for c in letters)

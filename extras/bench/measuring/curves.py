@@ -28,13 +28,8 @@ class Curve:
     why: str = ""
 
     def document(self) -> dict[str, Any]:
-        return {
-            "channel": self.channel,
-            "place": self.place,
-            "eq8": self.warming and self.warming.document(),
-            "equilibrium": self.equilibrium and self.equilibrium.document(),
-            "why": self.why,
-        }
+        eq8, steady = self.warming and self.warming.document(), self.equilibrium and self.equilibrium.document()
+        return {"channel": self.channel, "place": self.place, "eq8": eq8, "equilibrium": steady, "why": self.why}
 
 
 @dataclass(frozen=True)
@@ -66,13 +61,8 @@ class Curves:
             {"tests": list(names), "place": place, **pooled.document()}
             for (names, place), pooled in self.pooled.items()
         ]
-        return {
-            "case": self.case.name,
-            "revision": self.case.model.revision,
-            "agrees": self.agrees,
-            "tests": tests,
-            "repeats": equal,
-        }
+        head = {"case": self.case.name, "revision": self.case.model.revision, "agrees": self.agrees}
+        return {**head, "tests": tests, "repeats": equal}
 
 
 def curves(case: th.MeasuredCase, resolution_K: float = 0.5) -> Curves:
