@@ -2,16 +2,16 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator
 from dataclasses import dataclass
 from html import escape
-from typing import TYPE_CHECKING
 
+from geom.description.geometry import Geometry
+from geom.description.machine import Machine
+from geom.description.part import Part
+from geom.description.roles import Role
 from geom.drawings.views import Views, fill, middle_level
-from scripts.dimensions import counts, diameters, lengths
-
-if TYPE_CHECKING:
-    from geom.description.machine import Machine
 
 mm = 1e3
 _THIN = 'stroke="#777" stroke-width="0.5"'
@@ -108,3 +108,56 @@ def _legend(machine: Machine, views: Views, pen: Pen, x: float, y: float) -> Ite
         box = f'<rect x="{x:.1f}" y="{at:.1f}" width="{1.6 * pen.unit:.1f}" height="{pen.unit:.1f}" stroke="#333" '
         swatch = f'{box}stroke-width="0.4" fill="{fill(material)}"/>' if material else ""
         yield swatch + pen.text(x + (2.2 * pen.unit if material else 0), at + 0.85 * pen.unit, text)
+
+
+Diameter = tuple[str, float]  # what, m
+Length = tuple[str, float, float]  # what, from, to (m)
+
+
+def diameters(machine: Machine) -> list[Diameter]:
+    """Round things, smallest first."""
+    parts = {part.name: part for part in machine.parts}
+    word_of = {
+        "shaft": "shaft",
+        "bearing.left": "bearing",
+        "rotor.core": "rotor",
+        "yoke": "yoke",
+        "stator.core": "laminations",
+    }
+    profiles = {word: [p for p, _, _ in parts[name].prisms] for name, word in word_of.items() if name in parts}
+    by_word = {w: 2 * max(math.hypot(x, y) for p in of for x, y, _ in p.outer) for w, of in profiles.items()}
+    if "rotor" in by_word and (stator := getattr(machine.geometry, "stator", None)):
+        by_word["bore"] = by_word["rotor"] + 2 * stator.air_gap
+    return sorted(by_word.items(), key=lambda d: d[1])
+
+
+def lengths(machine: Machine) -> list[Length]:
+    """Along the axis, shortest first: stack, over the end windings, over the end-caps, overall."""
+    words = {"stack": Role.ROTOR, "end windings": Role.WINDING, "end-caps": Role.END_SHIELD}
+    spans = {word: _span([p for p in machine.parts if p.role is role]) for word, role in words.items()}
+    spans["overall"] = _span(list(machine.parts))
+    measures = [(word, *span) for word, span in spans.items() if span is not None]
+    return sorted(measures, key=lambda length: length[2] - length[1])
+
+
+def counts(machine: Machine) -> str:
+    """Slots, poles, bars, fins and the air gap in words."""
+    return ", ".join(_counted(machine.geometry))
+
+
+def _counted(g: Geometry | None) -> Iterator[str]:
+    if g is None:
+        return
+    for group in ("stator", "rotor", "commutator", "housing"):
+        for key in ("slots", "poles", "bars", "ducts", "fins"):
+            number = getattr(getattr(g, group, None), key, 0)
+            if number and (key != "fins" or getattr(g.housing, "kind", "axial-fins").endswith("fins")):
+                yield f"{number} {'commutator ' if group == 'commutator' else ''}{key}"
+    if hasattr(g, "stator"):
+        yield f"air gap {g.stator.air_gap * 1e3:g} mm"
+
+
+def _span(parts: list[Part]) -> tuple[float, float] | None:
+    if not parts:
+        return None
+    return min(p.span[0] for p in parts), max(p.span[1] for p in parts)

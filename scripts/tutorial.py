@@ -51,19 +51,13 @@ def run(lines: list[str], folder: Path) -> dict[str, list[str]]:
     """Every command in the folder, at 80 columns, as a reader would; stdout without trailing blanks."""
     (folder / "cases").symlink_to(ROOT / "cases")
     path = f"{Path(sys.executable).parent}{os.pathsep}{os.environ['PATH']}"
+    variables = {**os.environ, "PATH": path, "COLUMNS": "80"}
     printed: dict[str, list[str]] = {}
     for line in lines:
         if line.startswith(WAITING):
             continue
         begun = time.monotonic()
-        done = subprocess.run(
-            line,
-            shell=True,
-            cwd=folder,
-            env={**os.environ, "PATH": path, "COLUMNS": "80"},
-            text=True,
-            stdout=subprocess.PIPE,
-        )
+        done = subprocess.run(line, shell=True, cwd=folder, env=variables, text=True, stdout=subprocess.PIPE)
         print(f"{time.monotonic() - begun:6.0f} s  exit {done.returncode}  {line}", file=sys.stderr)
         if done.returncode > 1:
             raise SystemExit(f"{line} ended with {done.returncode}")

@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 from simulated.physics.draws import Draws
 from simulated.physics.plant import State
 from simulated.physics.surfaces import Conditions
-from simulated.pm import files as pm_files, meters as pm_meters, plant as pm_plant
+from simulated.pm import files as pm_files, plant as pm_plant
 from simulated.pm.plant import PmLosses, PmPlant
 
 Array = NDArray[np.float64]
@@ -124,15 +124,15 @@ def write(out: Path, name: str, loaded: Course, cooling: Course, draws: Draws) -
     """The two files of a test; returns the cold readings."""
     plan, every = PLANS[name], int(loaded.time[1])
     alpha = draws.around("magnet.alpha", -0.105e-2, 0.02)
-    cold_emf = pm_meters.emf(plan.emf_V, alpha, loaded.magnets[0])
+    cold_emf = pm_files.emf(plan.emf_V, alpha, loaded.magnets[0])
     cold = {
-        "cold_ohm": float(pm_meters.read("ohm", loaded.ohm[0], f"{name}.cold", draws)),
-        "cold_V": float(pm_meters.read("volt", cold_emf, f"{name}.cold", draws)),
-        "cold_degC": float(pm_meters.thermometer(loaded.ambient[0], f"{name}.cold", draws)),
+        "cold_ohm": float(pm_files.read("ohm", loaded.ohm[0], f"{name}.cold", draws)),
+        "cold_V": float(pm_files.read("volt", cold_emf, f"{name}.cold", draws)),
+        "cold_degC": float(pm_files.thermometer(loaded.ambient[0], f"{name}.cold", draws)),
     }
-    ohm = pm_meters.read("ohm", loaded.ohm, f"{name}.hot", draws)
-    volt = pm_meters.read("volt", pm_meters.emf(plan.emf_V, alpha, loaded.magnets), f"{name}.hot", draws)
-    air = pm_meters.thermometer(loaded.ambient, f"{name}.hot", draws)
+    ohm = pm_files.read("ohm", loaded.ohm, f"{name}.hot", draws)
+    volt = pm_files.read("volt", pm_files.emf(plan.emf_V, alpha, loaded.magnets), f"{name}.hot", draws)
+    air = pm_files.thermometer(loaded.ambient, f"{name}.hot", draws)
     with_R, with_E = (np.isclose(loaded.time % s, 0.0) & (loaded.time > 0) for s in (max(1800, every), 3600))
     lines = ["time_s,current_A,speed_rpm,T_ambient_degC,R_winding_ohm,emf_V"]
     for i, t in enumerate(loaded.time):
@@ -140,9 +140,9 @@ def write(out: Path, name: str, loaded: Course, cooling: Course, draws: Draws) -
         lines.append(f"{t:.0f},{plan.current:g},{plan.rpm:g},{air[i]:.1f},{R},{E}")
     (out / f"{name}.csv").write_text("\n".join(lines) + "\n", encoding="utf-8")
     kept = (cooling.time >= 30.0) & (cooling.time <= 330.0)
-    hot = pm_meters.read("ohm", cooling.ohm[kept], f"{name}.hot", draws)
+    hot = pm_files.read("ohm", cooling.ohm[kept], f"{name}.hot", draws)
     sheet = pm_files.sheet(name, plan.base, plan.current, cold, float(air[-1]))
-    pm_files.write_sheet(out / f"{name}.toml", sheet)
+    (out / f"{name}.toml").write_text(tomlkit.dumps(sheet), encoding="utf-8")
     after = [f"{t:.0f},{R:.4g}" for t, R in zip(cooling.time[kept], hot)]
     (out / f"{name}-cooling.csv").write_text("\n".join(["time_s,R_winding_ohm", *after]) + "\n", encoding="utf-8")
     return cold

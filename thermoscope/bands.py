@@ -24,6 +24,8 @@ from thermoscope.case_folder.folder import Folder, Progress
 from thermoscope.case_folder.runs import named_rows
 from validation.bands import Bands, ParameterPosterior, Place, at_end, band_stretches, bands, parameter_posterior
 from validation.bands.posterior import rows_read
+from validation.comparison.error_budget import model_of
+from validation.comparison.predict import record
 from validation.counting import counted
 
 SMALL = 40  # states up to which bands cost less than a run's other work
@@ -54,16 +56,9 @@ def _from_cache(folder: Folder, file: Path) -> ParameterPosterior:
     with np.load(file) as archive:
         names, tests = json.loads(str(archive["said"]))
         bare = replace(folder.case, model=replace(folder.case.model, revision=0))
-        covariance, offset = archive["covariance"], archive["offset"]
+        arrays = {name: archive[name] for name in ("covariance", "offset")}
     read = rows_read([t for t in folder.case.tests if t.name in tests])
-    return replace(
-        parameter_posterior(bare),
-        names=tuple(names),
-        covariance=covariance,
-        fitted=tuple(tests),
-        read=read,
-        offset=offset,
-    )
+    return replace(parameter_posterior(bare), names=tuple(names), fitted=tuple(tests), read=read, **arrays)
 
 
 def predicted_bands(of: ParameterPosterior, name: str, record: Record, rows: Mapping[str, Row]) -> Bands:
@@ -118,9 +113,6 @@ def test_bands(folder: Folder, progress: Progress) -> list[dict[str, Any]]:
 
     The readings' own uncertainty (1 sigma of the sheet) counts with it.
     """
-    from validation.comparison.error_budget import model_of
-    from validation.comparison.predict import record
-
     of, places = posterior_of(folder, progress), _places(named_rows(model_of(folder)[0], folder))
     out = []
     for test in counted("bands around the model", folder.case.tests, len(folder.case.tests)):

@@ -6,9 +6,8 @@ import os
 import shutil
 import subprocess
 import sys
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
-from functools import partial
 from importlib.util import find_spec
 from typing import Annotated, Any
 
@@ -49,20 +48,19 @@ def findings(browsers: Sequence[str] = BROWSERS) -> list[Finding]:
     """Everything that is looked for, in the order of importance.  browsers : commands, any of which will do"""
     from viz.rendering.gl import COMMAND
 
+    extras = {e: all(find_spec(package) is not None for package in e.packages) for e in EXTRAS.values()}
+    rerun = (shutil.which("rerun") or shutil.which("rerun", path=os.path.dirname(sys.executable))) is not None
+    browser = any(shutil.which(name) for name in browsers)
     return [
-        *(
-            _finding(f"[{e.name}]", partial(_installed, e.name), e.needed_for, False, e.install)
-            for e in EXTRAS.values()
-        ),
-        _finding("off-screen OpenGL", _gl, "pictures (render, report, demo)", True, COMMAND),
-        _finding("rerun viewer", _rerun, "opening .rrd recordings", False, "uv pip install rerun-sdk"),
-        _finding("Vulkan driver", _vulkan, "screenshots from the rerun viewer without a display", False, VULKAN),
-        _finding("Chromium", partial(_browser, browsers), "screenshots of the HTML report", False, CHROMIUM),
+        *(_finding(f"[{e.name}]", present, e.needed_for, False, e.install) for e, present in extras.items()),
+        _finding("off-screen OpenGL", _gl(), "pictures (render, report, demo)", True, COMMAND),
+        _finding("rerun viewer", rerun, "opening .rrd recordings", False, "uv pip install rerun-sdk"),
+        _finding("Vulkan driver", _vulkan(), "screenshots from the rerun viewer without a display", False, VULKAN),
+        _finding("Chromium", browser, "screenshots of the HTML report", False, CHROMIUM),
     ]
 
 
-def _finding(name: str, there: Callable[[], bool], needed_for: str, needed: bool, fix: str) -> Finding:
-    present = there()
+def _finding(name: str, present: bool, needed_for: str, needed: bool, fix: str) -> Finding:
     return Finding(name, present, needed_for, needed, "" if present else as_root(fix))
 
 
@@ -71,29 +69,16 @@ def as_root(command: str) -> str:
     return f"sudo {command}" if command.startswith("apt-get") and os.geteuid() != 0 else command
 
 
-def _installed(extra: str) -> bool:
-    # The packages of an extra that are not installed
-    return not [package for package in EXTRAS[extra].packages if find_spec(package) is None]
-
-
 def _gl() -> bool:
     from viz.rendering.gl import off_screen_window
 
     return off_screen_window() is not None
 
 
-def _rerun() -> bool:
-    return (shutil.which("rerun") or shutil.which("rerun", path=os.path.dirname(sys.executable))) is not None
-
-
 def _vulkan() -> bool:
     """A loader and at least one driver; asked in a process of its own, since drivers may crash."""
     process = subprocess.run([sys.executable, "-P", "-c", _INSTANCE], capture_output=True, timeout=60, check=False)
     return process.returncode == 0
-
-
-def _browser(browsers: Sequence[str]) -> bool:
-    return any(shutil.which(name) for name in browsers)
 
 
 _INSTANCE = """

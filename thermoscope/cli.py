@@ -11,11 +11,12 @@ from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from functools import cache
 from importlib import import_module
+from importlib.abc import InspectLoader
 from importlib.util import find_spec
 from inspect import cleandoc
 from keyword import iskeyword
 from types import CodeType
-from typing import TYPE_CHECKING, Annotated, Any, cast
+from typing import Annotated, Any, cast
 
 import typer
 
@@ -26,9 +27,6 @@ from thermoscope.console.summary import LINES, limited_lines
 from thermoscope.console.terminal import ranges_as_notes, versions
 from thermoscope.files import STOPPED, message_of, printable
 from thermoscope.parts import NEEDS, explained, required
-
-if TYPE_CHECKING:
-    from importlib.abc import InspectLoader
 
 UsageError: Any = typer.BadParameter.__base__  # of click, wherever this version of typer keeps it
 ANYWHERE = ("--all", "--debug")  # options of every command
@@ -130,7 +128,7 @@ def _help_alone(module: str, name: str) -> Callable[[], None]:
     """A stand-in that says what the command says of itself; the module is read, not loaded."""
     spec = find_spec(module)
     assert spec is not None
-    program = cast("InspectLoader", spec.loader).get_code(module)  # its bytecode, where that was kept
+    program = cast(InspectLoader, spec.loader).get_code(module)  # its bytecode, where that was kept
     assert program is not None
     function = next(c for c in program.co_consts if isinstance(c, CodeType) and c.co_name == name)
 

@@ -215,17 +215,11 @@ def demo_summary(stages: Sequence[Stage], out: Path, seconds: float) -> Summary:
     """The errors, model by model."""
     headers = ["model", *(f"{t['name']}{'*' if t['role'] == 'hold-out' else ''}" for t in stages[0].errors["tests"])]
     rows = [[s.name, *(t["rmse_K"] for t in s.errors["tests"])] for s in stages]
-    flange = [[s.name, *(right_flange(t) for t in s.errors["tests"])] for s in stages]
+    flange = [
+        [s.name, *(next(c["rmse_K"] for c in t["channels"] if c["place"] == FLANGE) for t in s.errors["tests"])]
+        for s in stages
+    ]
     sentence = f"{out / 'report.html'} tells it all. {seconds:.0f} s; * was never used."
-    return Summary(
-        sentence,
-        [
-            Table("Error of all sensors, rms (K)", headers, rows, keep=headers),
-            Table("Error on the right flange alone, rms (K)", headers, flange, keep=headers),
-        ],
-        f"recording {out}/*.rrd; thermoscope show serve {out / CASE}",
-    )
-
-
-def right_flange(test: Mapping[str, Any]) -> float:
-    return next((c["rmse_K"] for c in test["channels"] if c["place"] == FLANGE), float("nan"))
+    errors = {"Error of all sensors, rms (K)": rows, "Error on the right flange alone, rms (K)": flange}
+    tables = [Table(title, headers, of, keep=headers) for title, of in errors.items()]
+    return Summary(sentence, tables, f"recording {out}/*.rrd; thermoscope show serve {out / CASE}")

@@ -77,16 +77,9 @@ def missing() -> LinearSegmentedColormap:
 
 def _oklab_to_srgb(L: Array, a: Array, b: Array) -> Array:
     """OKLab to sRGB in 0..1, clipped to the gamut (Ottosson 2020)."""
-    lms = (
-        np.stack(
-            [
-                L + 0.3963377774 * a + 0.2158037573 * b,
-                L - 0.1055613458 * a - 0.0638541728 * b,
-                L - 0.0894841775 * a - 1.2914855480 * b,
-            ]
-        )
-        ** 3
-    )
+    long = L + 0.3963377774 * a + 0.2158037573 * b
+    medium = L - 0.1055613458 * a - 0.0638541728 * b
+    short = L - 0.0894841775 * a - 1.2914855480 * b
     matrix = np.array(
         [
             [4.0767416621, -3.3077115913, 0.2309699292],
@@ -94,7 +87,7 @@ def _oklab_to_srgb(L: Array, a: Array, b: Array) -> Array:
             [-0.0041960863, -0.7034186147, 1.7076147010],
         ]
     )
-    linear = np.clip(matrix @ lms, 0.0, 1.0)
+    linear = np.clip(matrix @ np.stack([long, medium, short]) ** 3, 0.0, 1.0)
     return np.where(linear <= 0.0031308, 12.92 * linear, 1.055 * linear ** (1 / 2.4) - 0.055).T
 
 

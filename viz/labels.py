@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -43,14 +43,6 @@ def end_labels(
     across = ax.get_yaxis_transform()
     for i, y in zip(order, heights, strict=True):
         ax.plot([1.0, 1.012], [ends[i], y], transform=across, color=colours[i], lw=0.7, clip_on=False)
-        ax.annotate(
-            names[i],
-            (1.0, y),
-            xycoords=("axes fraction", "data"),
-            xytext=(9, 0),
-            textcoords="offset points",
-            va="center",
-            color=colours[i],
-            fontsize=size,
-            annotation_clip=False,
-        )
+        style: dict[str, Any] = {"color": colours[i], "fontsize": size, "va": "center", "annotation_clip": False}
+        place: dict[str, Any] = {"xycoords": ("axes fraction", "data"), "textcoords": "offset points"}
+        ax.annotate(names[i], (1.0, y), (9, 0), **place, **style)

@@ -38,16 +38,12 @@ def screened(effects: Row, *, unit: str = "K", title: str = "", png: str | Path 
     figure, (left, right) = th.paper.subplots(9.6, 4.0, columns=2)
     size = np.array([abs(e["value"]) for e in rows])
     x = halfnorm.ppf((np.arange(len(rows)) + 0.5) / len(rows))
-    left.scatter(size, x, s=22, c=[th.BLUE if e["active"] else th.LIGHT.faint for e in rows], zorder=3)
+    shades = [th.BLUE if e["active"] else th.LIGHT.faint for e in rows]
+    left.scatter(size, x, s=22, c=shades, zorder=3)
     for i in [i for i, e in enumerate(rows) if e["active"]][-TOP:]:
         left.annotate(rows[i]["effect"], (size[i], x[i]), (6, 0), textcoords="offset points", va="center", fontsize=8)
     left.set(ylabel="half-normal quantile", ylim=(0, None))
-    _bars(
-        right,
-        [e["words"] for e in rows[-TOP:]],
-        [abs(e["value"]) for e in rows[-TOP:]],
-        [th.BLUE if e["active"] else th.LIGHT.faint for e in rows[-TOP:]],
-    )
+    _bars(right, [e["words"] for e in rows[-TOP:]], list(size[-TOP:]), shades[-TOP:])
     for ax in (left, right):
         for key, words, line in LENTH:
             ax.axvline(effects[key], color=th.LIGHT.ink, lw=1.0, ls=line, label=words)
@@ -119,21 +115,16 @@ def cooling_law(law: SteadyLaw, further: SteadyTests | None = None, *, png: str 
     groups = [np.column_stack([np.round(t.coolant), np.delete(t.inputs, across, axis=1)]) for t in every]
     x = np.linspace(tests.scales.lowest[across], 1.5 * top, 61)
     inlets = np.unique(groups[0][:, 0])[:3]
-    words = (
-        f"A law of {len(law.numbers)} numbers; dashed, rings: not among its tests",
-        f"{name} ({unit})",
-        "W/K to the coolant",
-    )
-    figure, axes = th.paper.panels(len(inlets), 3, (3.8, 3.2), *words)
+    title = f"A law of {len(law.numbers)} numbers; dashed, rings: not among its tests"
+    figure, axes = th.paper.panels(len(inlets), 3, (3.8, 3.2), title, f"{name} ({unit})", "W/K to the coolant")
     for ax, inlet in zip(axes, inlets, strict=True):
         lines = np.unique(np.vstack(groups)[np.concatenate(groups)[:, 0] == inlet], axis=0)
         for colour, group in zip(SERIES, lines, strict=False):
             G, half = law.curve(np.insert(np.tile(group[1:], (x.size, 1)), across, x, axis=1), inlet)
             inside = (x <= top) & (groups[0] == group).all(axis=1).any()
             ax.fill_between(x, G - half, G + half, color=colour, alpha=0.25, lw=0)
-            ax.plot(
-                x, G, "--", color=colour, label=", ".join(f"{v:g} {u}" for v, u in zip(group[1:], units, strict=True))
-            )
+            label = ", ".join(f"{v:g} {u}" for v, u in zip(group[1:], units, strict=True))
+            ax.plot(x, G, "--", color=colour, label=label)
             ax.plot(x[inside], G[inside], color=colour)
             for t, of, face in zip(every, groups, (colour, "none"), strict=False):
                 rows = (of == group).all(axis=1)

@@ -101,7 +101,8 @@ def packed(network: Network, values: Mapping[str, float], reference: th.Referenc
     steady = np.array([not p.bends and not p.law.reads for p in every.patterns], bool)
     live = ~steady & (acting != 0.0)
     constant = [float(p.law.factor({})) if s else 0.0 for p, s in zip(every.patterns, steady, strict=True)]
-    inputs = tuple(Signal(n, unit_of(network, n), *_range(reference, n)) for n in _read(every, live))
+    reads = {name for p, on in zip(every.patterns, live, strict=True) if on for name in p.law.reads}
+    inputs = tuple(Signal(n, unit_of(network, n), *_range(reference, n)) for n in sorted(reads))
     hidden = np.array(["#" in s for s in network.states], bool)
     # What temperature laws see: (input, 0), or (None, a size)
     laws = [x.law for x in every.input_sizes(live)]
@@ -123,10 +124,6 @@ def packed(network: Network, values: Mapping[str, float], reference: th.Referenc
         tuple((law.reads[0], 0.0) if law.reads else (None, float(law.factor({}))) for law in laws),
         initial_degC=USUAL_C if reference.start_C is None else reference.start_C,
     )
-
-
-def _read(every: th.Assembly, live: NDArray[np.bool_]) -> list[str]:
-    return sorted({name for p, on in zip(every.patterns, live, strict=True) if on for name in p.law.reads})
 
 
 def reach_of(signal: Signal) -> float:

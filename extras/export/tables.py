@@ -84,12 +84,8 @@ def _table(name: str, law: th.Law, ranges: Ranges) -> Sum:
         return (Product(1.0, (_line(name, law, reads[0], ranges),)),)
     if len(reads) == 2:
         return (Product(1.0, (_plane(name, law, reads, ranges),)),)
-    raise InputError(
-        f"the law {type(law).__name__} of '{name}' follows {len(reads)} inputs at once ({', '.join(reads)}) and has "
-        "no form in C",
-        "--as",
-        "a law of one or two inputs, or a product of such laws",
-    )
+    what = f"the law {type(law).__name__} of '{name}' follows {len(reads)} inputs at once ({', '.join(reads)})"
+    raise InputError(f"{what} and has no form in C", "--as", "a law of one or two inputs, or a product of such laws")
 
 
 def _line(name: str, law: th.Law, of: str, ranges: Ranges) -> Tabulated:
@@ -134,11 +130,8 @@ def _denser_at_zero(low: float, high: float) -> th.Array:
 
 
 def _coarse(name: str, law: th.Law, reads: Iterable[str]) -> InputError:
-    return InputError(
-        f"the law {type(law).__name__} of '{name}' over {', '.join(reads)} is too rough for a table",
-        "--as",
-        "a law without jumps over the range of its inputs",
-    )
+    what = f"the law {type(law).__name__} of '{name}' over {', '.join(reads)} is too rough for a table"
+    return InputError(what, "--as", "a law without jumps over the range of its inputs")
 
 
 @singledispatch

@@ -42,13 +42,8 @@ def cut_body(body: Body, wedge: th.Wedge | None) -> tuple[pyvista.PolyData, pyvi
 
 
 def _smooth(mesh: pyvista.PolyData) -> pyvista.PolyData:
-    return mesh.compute_normals(
-        cell_normals=False,
-        split_vertices=True,
-        feature_angle=SMOOTH,
-        consistent_normals=False,
-        auto_orient_normals=False,
-    )
+    as_it_is = {"cell_normals": False, "consistent_normals": False, "auto_orient_normals": False}
+    return mesh.compute_normals(split_vertices=True, feature_angle=SMOOTH, **as_it_is)
 
 
 def _clipped(mesh: pyvista.PolyData, planes: list[Plane]) -> pyvista.PolyData:

@@ -47,12 +47,9 @@ def _plain(o: Outlines, part: th.Part) -> list[Body]:
     if sections:
         return [Body(part.name, finish, joined([revolved(rounded(s, 0.001)) for s in sections]))]
     plain = joined([extruded(o.of(p), *p[1:], EDGE) for p in part.prisms])
-    return [Body(part.name, finish, plain.turned(TURN) if _between_bars(o, part) else plain)]
-
-
-def _between_bars(o: Outlines, part: th.Part) -> bool:
-    """The insulation of a commutator: as long as its bars."""
-    return any(np.allclose(part.span, p.span) for p in o.parts(th.Role.COMMUTATOR)) and len(part.prisms) > 4
+    # The insulation of a commutator is as long as its bars, and lies between them
+    between = any(np.allclose(part.span, p.span) for p in o.parts(th.Role.COMMUTATOR)) and len(part.prisms) > 4
+    return [Body(part.name, finish, plain.turned(TURN) if between else plain)]
 
 
 def _housing(o: Outlines, part: th.Part) -> list[Body]:

@@ -87,11 +87,8 @@ def bearing(o: Outlines, part: th.Part) -> list[Body]:
     radius = min(0.30 * (r1 - r0), 0.48 * width)
     count = int(2 * np.pi * middle / (2.5 * radius))
     one = ball(radius).moved((middle, 0.0, (z0 + z1) / 2))
-    return [
-        Body(
-            part.name, Finish.STEEL, joined([inner, outer, *(one.turned(2 * np.pi * k / count) for k in range(count))])
-        )
-    ]
+    balls = [one.turned(2 * np.pi * k / count) for k in range(count)]
+    return [Body(part.name, Finish.STEEL, joined([inner, outer, *balls]))]
 
 
 def shaft(o: Outlines, part: th.Part) -> list[Body]:

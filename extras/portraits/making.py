@@ -87,13 +87,9 @@ def _stacked(layers: list[list[th.Array]], heights: list[float], end: Polygon) -
         [s + (np.arange(n) + 1) % n for s, n in zip(np.cumsum([0, *sizes[:-1]]), sizes, strict=True)]
     )
     here = np.arange(total)
-    sides = [
-        np.concatenate(
-            [np.stack([here, following, following + total], 1), np.stack([here, following + total, here + total], 1)]
-        )
-        + k * total
-        for k in range(len(heights) - 1)
-    ]
+    near, far = [here, following, following + total], [here, following + total, here + total]
+    side = np.concatenate([np.stack(near, 1), np.stack(far, 1)])
+    sides = [side + k * total for k in range(len(heights) - 1)]
     lid = filled(end)
     return Shape(points, np.concatenate([*sides, lid[:, ::-1], lid + total * (len(heights) - 1)]))
 

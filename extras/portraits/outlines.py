@@ -5,15 +5,13 @@ from __future__ import annotations
 from collections import Counter
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 import shapely
+from shapely import Polygon
 
 from thermoscope import plugin as th
-
-if TYPE_CHECKING:
-    from shapely import Polygon
 
 SEGMENTS = 120  # of a full turn
 RAYS = 40  # around the axis along which a part is looked at

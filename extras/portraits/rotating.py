@@ -74,14 +74,12 @@ def shaft_fan(o: Outlines) -> list[Body]:
     shafts = [s for p in o.parts(th.Role.SHAFT) for s in o.section(p) or []]
     radius = 0.7 * max((s.bounds[2] for s in shafts), default=0.15 * reach)
     fan = _radial_fan(radius, 0.74 * reach, back + 0.2 * deep, face - 0.18 * deep)
+    stub = rod(radius, 0.85 * deep).flipped().moved((0, 0, face))
     return [
         Body(body.name, Finish.PAINT, revolved(shell), added=True),
         Body(body.name, Finish.STEEL, _cover(0.71 * reach, back), added=True),
         Body(shield.name, Finish.RUBBER, fan, added=True),
-        *(
-            Body(p.name, Finish.STEEL, rod(radius, 0.85 * deep).flipped().moved((0, 0, face)), added=True)
-            for p in o.parts(th.Role.SHAFT)[:1]
-        ),
+        *(Body(p.name, Finish.STEEL, stub, added=True) for p in o.parts(th.Role.SHAFT)[:1]),
     ]
 
 
@@ -134,15 +132,9 @@ def _brush(part: th.Part, radius: float, span: tuple[float, float], angle: float
     wide, long, high = 0.24 * radius, 0.34 * length, 0.42 * radius
     for share in (0.3, 0.72):
         z = span[0] + share * length
-        out += [
-            Body(part.name, Finish.CARBON, box(wide, long, high, 0.0008).outward(angle, radius, z), added=True),
-            Body(
-                part.name,
-                Finish.BRASS,
-                box(1.35 * wide, 1.2 * long, 0.55 * high, 0.001).outward(angle, radius + 0.3 * high, z),
-                added=True,
-            ),
-        ]
+        carbon = box(wide, long, high, 0.0008).outward(angle, radius, z)
+        holder = box(1.35 * wide, 1.2 * long, 0.55 * high, 0.001).outward(angle, radius + 0.3 * high, z)
+        out += [Body(part.name, Finish.CARBON, carbon, added=True), Body(part.name, Finish.BRASS, holder, added=True)]
     arm = rod(0.22 * wide, 1.25 * length).moved((0.0, 0.0, span[0]))
     at = radius + 0.55 * high
     beside = arm.moved((at * np.cos(angle), at * np.sin(angle), 0.0)).turned(0.95 * wide / at)

@@ -2,19 +2,14 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
-from shapely import box
+from shapely import Polygon, box
 from shapely.affinity import rotate
 
 from extras.portraits.making import extruded, oval, rounded, swept
 from extras.portraits.outlines import Outlines, angle_of, radii_of
 from extras.portraits.shape import Body, Finish, Shape, joined
 from thermoscope import plugin as th
-
-if TYPE_CHECKING:
-    from shapely import Polygon
 
 STEPS = 25  # along one coil
 LOOPS = 3  # of a coil around one tooth that are drawn

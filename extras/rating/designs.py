@@ -50,29 +50,15 @@ def objective_space(rows: Sequence[Row], objectives: Sequence[str], *, theme: th
     axes = [*objectives, *objectives][:3] if len(objectives) < 3 else [objectives[0], objectives[1], objectives[-1]]
     colour = next((o for o in objectives if o not in axes), objectives[0])
     x, y, z, c = (column(rows, o) for o in (*axes, colour))
-    out = go.Figure(
-        go.Scatter3d(
-            x=x,
-            y=y,
-            z=z,
-            mode="markers",
-            text=[str(r["design"]) for r in rows],
-            marker={"size": 5, "color": c, "colorscale": SCALE, "colorbar": {"title": WORDS.get(colour, colour)}},
-            hovertemplate="%{text}<br>%{x:.4g}, %{y:.4g}, %{z:.4g}<extra></extra>",
-        )
-    )
+    marker = {"size": 5, "color": c, "colorscale": SCALE, "colorbar": {"title": WORDS.get(colour, colour)}}
+    style = {"mode": "markers", "hovertemplate": "%{text}<br>%{x:.4g}, %{y:.4g}, %{z:.4g}<extra></extra>"}
+    out = go.Figure(go.Scatter3d(x=x, y=y, z=z, text=[str(r["design"]) for r in rows], marker=marker, **style))
     titles = [{"title": WORDS.get(o, o), "type": _type(u)} for o, u in zip(axes, (x, y, z), strict=True)]
-    scene = {
-        **dict(zip(("xaxis", "yaxis", "zaxis"), titles, strict=True)),
-        "camera": {"eye": EYE, "center": {"z": -0.15}},
-    }
-    out.update_layout(
-        title={"text": "The Pareto set", "x": 0.02},
-        scene=scene,
-        height=620,
-        paper_bgcolor=theme.paper,
-        font={"color": theme.ink, "family": "DejaVu Sans, Arial, sans-serif"},
-    )
+    camera = {"eye": EYE, "center": {"z": -0.15}}
+    scene = {**dict(zip(("xaxis", "yaxis", "zaxis"), titles, strict=True)), "camera": camera}
+    font = {"color": theme.ink, "family": "DejaVu Sans, Arial, sans-serif"}
+    title = {"text": "The Pareto set", "x": 0.02}
+    out.update_layout(title=title, scene=scene, height=620, paper_bgcolor=theme.paper, font=font)
     return out
 
 

@@ -64,16 +64,10 @@ def reached(over: Callable[[float], th.Array], limits: Mapping[str, float], form
         T = over(0.0)
         k = int(np.argmax(T - most))
         if T[k] >= RUNAWAY_C:
-            raise InputError(
-                "the model does not come to rest even without any load",
-                f"rating {form}",
-                "a way for heat to leave every part; effects add one (explain diagnose)",
-            )
-        raise LimitError(
-            f"the limit of '{names[k]}', {most[k]:g} degC, is exceeded without any load ({T[k]:.1f} degC)",
-            "--limit",
-            "a higher limit, cooler surroundings or a lower speed",
-        )
+            right = "a way for heat to leave every part; effects add one (explain diagnose)"
+            raise InputError("the model does not come to rest even without any load", f"rating {form}", right)
+        what = f"the limit of '{names[k]}', {most[k]:g} degC, is exceeded without any load ({T[k]:.1f} degC)"
+        raise LimitError(what, "--limit", "a higher limit, cooler surroundings or a lower speed")
     high = 1.0
     while worst(high) < 0.0:
         high *= 1.5

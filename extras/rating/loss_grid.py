@@ -35,18 +35,15 @@ def loss_grid(columns: Mapping[str, th.Array], where: str, voltage: float | None
     """
     for name in (TORQUE, SPEED):
         if name not in columns:
-            raise InputError(
-                f"column '{name}' is missing", where, f"columns {TORQUE}, {SPEED} and NAME_W for each loss"
-            )
+            right = f"columns {TORQUE}, {SPEED} and NAME_W for each loss"
+            raise InputError(f"column '{name}' is missing", where, right)
     columns = _at_voltage(dict(columns), where, voltage)
     ones = np.zeros_like(columns[TORQUE])
-    axes = [np.unique(c) for c in (columns.get("temperature_degC", ones), columns[SPEED], columns[TORQUE])]
+    points = columns.get("temperature_degC", ones), columns[SPEED], columns[TORQUE]
+    axes = [np.unique(c) for c in points]
     if min(axes[1].size, axes[2].size) < 2:
         raise InputError(f"the map has {axes[2].size} torques and {axes[1].size} speeds", where, "two or more of each")
-    index = [
-        np.searchsorted(axis, c)
-        for axis, c in zip(axes, (columns.get("temperature_degC", ones), columns[SPEED], columns[TORQUE]), strict=True)
-    ]
+    index = [np.searchsorted(axis, c) for axis, c in zip(axes, points, strict=True)]
     count = np.zeros([a.size for a in axes], int)
     np.add.at(count, tuple(index), 1)
     _complete(count, axes, where)
@@ -57,11 +54,8 @@ def loss_grid(columns: Mapping[str, th.Array], where: str, voltage: float | None
     for n in names:
         watts[n][tuple(index)] = columns[f"{n}_W"]
         if not np.all((watts[n] >= 0.0) & (watts[n] <= th.KEY_UNITS["W"].high)):
-            raise InputError(
-                f"'{n}_W' has negative, missing or impossible values",
-                where,
-                f"watts that become heat, {th.KEY_UNITS['W'].words}",
-            )
+            right = f"watts that become heat, {th.KEY_UNITS['W'].words}"
+            raise InputError(f"'{n}_W' has negative, missing or impossible values", where, right)
     _balanced(columns, names, where)
     return LossGrid(axes[2], axes[1], axes[0], watts)
 
@@ -72,9 +66,8 @@ def _at_voltage(columns: dict[str, th.Array], where: str, voltage: float | None)
     voltages = np.unique(columns["voltage_V"])
     level = voltages[0] if voltage is None and voltages.size == 1 else voltage
     if level not in voltages:
-        raise InputError(
-            f"the map has {voltages.size} voltages", where, f"--voltage one of {', '.join(f'{v:g}' for v in voltages)}"
-        )
+        right = f"--voltage one of {', '.join(f'{v:g}' for v in voltages)}"
+        raise InputError(f"the map has {voltages.size} voltages", where, right)
     return {n: c[columns["voltage_V"] == level] for n, c in columns.items()}
 
 
@@ -85,11 +78,9 @@ def _complete(count: th.Ints, axes: list[th.Array], where: str) -> None:
     T, n, M = (axis[i] for axis, i in zip(axes, bad[0], strict=True))
     holes = [at for at in bad if count[at] == 0]
     what = f"{len(holes)} of {count.size} points are missing" if holes else f"{len(bad)} points are given twice"
-    raise InputError(
-        f"the map has holes or doubles: {what}, the first at {M:g} Nm, {n:g} 1/min, {T:g} degC",
-        where,
-        "every torque at every speed, once; fill what the machine cannot reach with the nearest point",
-    )
+    what = f"the map has holes or doubles: {what}, the first at {M:g} Nm, {n:g} 1/min, {T:g} degC"
+    right = "every torque at every speed, once; fill what the machine cannot reach with the nearest point"
+    raise InputError(what, where, right)
 
 
 def _balanced(columns: Mapping[str, th.Array], names: list[str], where: str) -> None:

@@ -56,21 +56,15 @@ def operation(
     reads = dict.fromkeys(n for x in network.elements for n in x.law.reads if n != th.CLOCK)
     for name in fixed:
         if name not in (*reads, *network.boundaries):
-            raise InputError(
-                f"'{name}' is not an input or boundary of the model",
-                "--at",
-                th.suggestion(name, (*reads, *network.boundaries)),
-            )
+            right = th.suggestion(name, (*reads, *network.boundaries))
+            raise InputError(f"'{name}' is not an input or boundary of the model", "--at", right)
     for name in carry:
         if name not in reads:
             raise InputError(f"'{name}' is not an input of the model", "--load", th.suggestion(name, tuple(reads)))
     loads = tuple(carry) or tuple(n for n in reads if network.measures(n) in th.LOADS)
     if not loads:
-        raise InputError(
-            "no input carries the load",
-            f"network '{network.name}'",
-            f"an input that measures {' or '.join(th.LOADS)}, or --load INPUT, one of {', '.join(reads)}",
-        )
+        right = f"an input that measures {' or '.join(th.LOADS)}, or --load INPUT, one of {', '.join(reads)}"
+        raise InputError("no input carries the load", f"network '{network.name}'", right)
     point = {**point, **fixed}
     inputs = {n: v for n, v in point.items() if n in reads}
     for name in reads:
@@ -109,14 +103,11 @@ def at_altitude(network: Network, altitude_m: float) -> Network:
 
 
 def _thinner(network: Network, link: th.Link, rho: float, wet: set[str]) -> th.Link:
-    fluids = {n for n in link.places if n in network.boundaries or _fluid(network, n)}
+    spaces = {p.name for p in network.places.values() if p.kind == "fluid"}
+    fluids = {n for n in link.places if n in network.boundaries or n in spaces}
     liquid = bool(fluids & wet) or any(network.measures(r) == th.LIQUID for r in link.law.reads)
     if not fluids or liquid or isinstance(link.law.temperature, th.Radiation):
         return link
     moving = [name for name in link.law.reads if network.measures(name) in MOVING]
     thin = th.thin_stream(link.law, rho) if link.kind == "stream" else th.thin_film(link.law, rho, moving)
     return replace(link, law=thin)
-
-
-def _fluid(network: Network, name: str) -> bool:
-    return name in network.places and network.places[name].kind == "fluid"

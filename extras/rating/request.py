@@ -55,10 +55,8 @@ def rated_model(folder: th.Folder, request: RatingRequest) -> Rated:
     if request.losses is not None:
         grid = loss_grid(columns_of(request.losses), str(request.losses), request.voltage)
         network = with_losses(network, grid, str(request.losses))
-        network = replace(
-            network,
-            quantities={TORQUE: th.USUAL_QUANTITIES[TORQUE], SPEED: th.USUAL_QUANTITIES[SPEED], **network.quantities},
-        )
+        usual = {name: th.USUAL_QUANTITIES[name] for name in (TORQUE, SPEED)}
+        network = replace(network, quantities={**usual, **network.quantities})
         around = {n: u for n, u in point.items() if n in network.boundaries}
         point = {**rated_point(folder, network), **around}
         point |= {TORQUE: float(grid.torque.max()), SPEED: float(np.median(grid.speed))}
@@ -76,11 +74,8 @@ def begun(model: Model, op: Operation, limits: Mapping[str, float], start: float
     warm = start / abs(op.inputs[op.main])
     for (place, most), T in zip(limits.items(), model.rest(op, warm, None), strict=True):
         if most <= T:
-            raise InputError(
-                f"at rest under {op.main} = {start:g} '{place}' is {T:.4g} degC already, its limit is {most:g} degC",
-                "--start",
-                "a lower load, or cold",
-            )
+            what = f"at rest under {op.main} = {start:g} '{place}' is {T:.4g} degC already, its limit is {most:g} degC"
+            raise InputError(what, "--start", "a lower load, or cold")
     return replace(op, warm=warm)
 
 

@@ -111,16 +111,9 @@ def derated(
         there = None if of is None else replace(of, network=d.where.network(of.network))
         half = None if d.rating is None else _half_band(folder, d.where.op, d.rating, there)
         before = earlier.get((d.where.of, d.where.value))
-        out.append(
-            {
-                "of": d.where.of,
-                "value": d.where.value,
-                "unit": d.where.unit,
-                "share": d.load / load,
-                "share_ci95": None if half is None else [max(d.load - half, 0.0) / load, (d.load + half) / load],
-                "share_before": None if before is None else before / whole,
-            }
-        )
+        ci95 = None if half is None else [max(d.load - half, 0.0) / load, (d.load + half) / load]
+        share = {"share": d.load / load, "share_ci95": ci95, "share_before": before and before / whole}
+        out.append({"of": d.where.of, "value": d.where.value, "unit": d.where.unit, **share})
     return out
 
 
@@ -132,14 +125,9 @@ def row(
     half = _half_band(folder, op, r, of)
     ci95 = None if half is None else [(r.load - half) * main, (r.load + half) * main]
     change = None if not before or not np.isfinite(before) else 100.0 * (r.load / before - 1.0)
-    return {
-        "form": r.form,
-        "value": r.load * main,
-        "ci95": ci95,
-        "at": r.at,
-        "before": None if before is None else before * main,
-        "change_percent": change,
-    }
+    was = None if before is None else before * main
+    rating = {"form": r.form, "value": r.load * main, "ci95": ci95, "at": r.at}
+    return {**rating, "before": was, "change_percent": change}
 
 
 def _half_band(folder: th.Folder, op: Operation, r: Rating, of: th.ParameterPosterior | None) -> float | None:

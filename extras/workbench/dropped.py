@@ -35,7 +35,8 @@ class Dropped:
 
         Raises InputError where it cannot go there.
         """
-        i, column = _at(key)
+        number, _, column = key.partition(":")
+        i = int(number) if number.isdigit() else len(key)
         if i >= len(self.records) or all(g.column != column for g in self.records[i].guesses):
             raise InputError(f"no column '{column}'", "recordings", "one of those that were dropped")
         records = list(self.records)
@@ -131,8 +132,3 @@ async def stored(parts: MultipartReader, folder: Path, largest: int) -> list[Pat
                     raise web.HTTPRequestEntityTooLarge(largest, size)
                 out.write(chunk)
     return files
-
-
-def _at(key: str) -> tuple[int, str]:
-    i, _, column = key.partition(":")
-    return (int(i) if i.isdigit() else len(key), column)

@@ -20,7 +20,6 @@ PRELOAD = [
     "validation.diagnosis",
     "validation.revision.revise",
     "thermoscope.case_folder.error_field",
-    "thermoscope.case_folder.error_field",
     "viz.viewer.page",
     "thermoscope.kernels",
     "pyvista",

@@ -88,14 +88,8 @@ class Tab:
         self.session = Session(bench, server, turn_to)
         draw(self.session)
         self._server = server
-        self._task = server.start(
-            backend="generic",
-            exec_mode="task",
-            show_connection_info=False,
-            open_browser=False,
-            timeout=0,
-            disable_logging=True,
-        )
+        quiet = {"show_connection_info": False, "open_browser": False, "disable_logging": True}
+        self._task = server.start(backend="generic", exec_mode="task", timeout=0, **quiet)
         self.session.open()
         started(self.session.watch_bench())
         self.folders = {"": Path(server._www), **{k: Path(v) for k, v in server.serve.items()}}

@@ -75,14 +75,10 @@ def slots() -> tuple[float, float, float]:
 
 def figure_2() -> Section:
     inside, between, along = slots()
+    why = "in the model only the base tells slots apart; the paper's differ by how they were made"
     rows = (
         Row("within one slot", "10 K", f"{inside:.1f} K", "from liner to the bundle's middle and along the slot"),
-        Row(
-            "between slots",
-            "8 K",
-            f"{between:.1f} K",
-            "in the model only the base tells slots apart; the paper's differ by how they were made",
-        ),
+        Row("between slots", "8 K", f"{between:.1f} K", why),
         Row("end of the slot against its middle", "-", f"{along:+.1f} K"),
     )
     words = (

@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+from matplotlib.figure import Figure
 from scipy.stats import t as student
 
 from extras.bench.measuring.warming import Repeats, normalised_error, pooled_curves, repeats
@@ -110,14 +111,9 @@ def _settled(case: Case) -> list[tuple[Any, ...]]:
     out = []
     for r in end_errors(case):
         verdict = "within" if r.within else "over"
-        numbers = (
-            f"{r.measured_C:.1f}",
-            f"{r.simulated_C:.1f}",
-            f"{r.difference_K:+.1f}",
-            f"{r.U95_K:.1f}",
-            f"{r.worst_K:.1f}",
-        )
-        out.append((r.test, "winding" if r.channel.startswith("R_") else "magnets", *numbers, verdict))
+        both = (f"{r.measured_C:.1f}", f"{r.simulated_C:.1f}", f"{r.difference_K:+.1f}")
+        sensor = "winding" if r.channel.startswith("R_") else "magnets"
+        out.append((r.test, sensor, *both, f"{r.U95_K:.1f}", f"{r.worst_K:.1f}", verdict))
     return out
 
 
@@ -270,10 +266,8 @@ def pictures() -> dict[str, object]:
     return {"figure-7.png": _repeats(), "figure-14.png": _curves(first), "figure-15-16.png": _curves(second)}
 
 
-def _repeats() -> object:
+def _repeats() -> Figure:
     """Three equal tests: their readings, their mean, and the band of one reading's 95 % uncertainty around it."""
-    from matplotlib.figure import Figure
-
     figure = Figure((6, 3.4), layout="constrained")
     axes = figure.subplots()
     for name, quantity, color in (("winding", "R", "C0"), ("magnets", "emf", "C1")):
@@ -289,10 +283,8 @@ def _repeats() -> object:
     return figure
 
 
-def _curves(tests: list[tuple[Case, Test]]) -> object:
+def _curves(tests: list[tuple[Case, Test]]) -> Figure:
     """Rises: lines simulated, marks measured with their 95 % uncertainty."""
-    from matplotlib.figure import Figure
-
     figure = Figure((4.2 * len(tests), 3.4), layout="constrained")
     for axes, (case, test) in zip(np.ravel(figure.subplots(1, len(tests), sharey=True)), tests, strict=True):
         calculated, air = readings(case, test), test.boundaries["ambient"]

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
+from matplotlib.figure import Figure
 
 from extras.bench.measuring.curves import assembly
 from extras.bench.measuring.warming import eq8, equilibrium, fit_eq8
@@ -51,38 +52,26 @@ def warming() -> Section:
     curve = eq8(MINUTES, *PUBLISHED)
     fit = fit_eq8(MINUTES, curve, start_C=20.0)
     noisy = fit_eq8(MINUTES, curve + 0.5 * np.random.default_rng(1).standard_normal(MINUTES.size))
+    rise = f"95 % of the rise {fit.rise_min():.1f} min"
     rows = (
         *(
-            Row(name, f"{p:g}", f"{v:.4g}", f"with 0.5 K of scatter {_ci(noisy.ci95[name])}")
+            Row(name, f"{p:g}", f"{v:.4g}", "with 0.5 K of scatter {:.4g} to {:.4g} (95 %)".format(*noisy.ci95[name]))
             for name, p, v in zip("abc", PUBLISHED, (fit.a, fit.b, fit.c))
         ),
         Row("T(0)", "ambient, 20 degC", f"{fit.start:.1f} degC", fit.warnings[0]),
-        Row(
-            "tau_95, time to 95 % of T_e",
-            "-",
-            f"{fit.time_to_share_min():.1f} min",
-            f"95 % of the rise {fit.rise_min():.1f} min",
-        ),
+        Row("tau_95, time to 95 % of T_e", "-", f"{fit.time_to_share_min():.1f} min", rise),
     )
     words = "T = a exp(b exp(c t)), t in minutes, fitted to the published curve every half minute."
     return Section("Figure 9 and eq. 8: the left flange in forced air", words, rows, picture="eq8.png")
-
-
-def _ci(pair: tuple[float, float]) -> str:
-    return f"{pair[0]:.4g} to {pair[1]:.4g} (95 %)"
 
 
 def settled() -> Section:
     long = np.arange(0.0, 120.5, 0.5)
     found = equilibrium(long, eq8(long, *PUBLISHED), 0.5)
     short = equilibrium(MINUTES, eq8(MINUTES, *PUBLISHED), 0.5)
+    meaning = "zero means: within the thermocouples' 0.5 K"
     rows = (
-        Row(
-            "difference of late readings",
-            "0",
-            "0.5 K or less, 10 min apart",
-            "zero means: within the thermocouples' 0.5 K",
-        ),
+        Row("difference of late readings", "0", "0.5 K or less, 10 min apart", meaning),
         Row("equilibrium since", "-", f"{found.from_min:.0f} min" if found.from_min else "not reached"),
         Row("T_e", f"{PUBLISHED[0]:g} degC", f"{found.T_e:.1f} degC"),
         Row("drift at the end of the hour", "-", f"{short.drift_K_h:.1f} K/h"),
@@ -109,20 +98,13 @@ def coolants() -> Section:
     glycol, air = ethylene_glycol(50.0, 0.5), 1.205 * 1006.0
     rate = 8e-3 / 60 * glycol.rho * glycol.cp
     loss = RATED["voltage"] * RATED["current"] - RATED["power"]
+    heat_words = f"{rate:.0f} W/K: 12.4 kW heats it {loss / rate:.1f} K in one pass"
+    air_words = "turning up the air flow hid convection on the right flange"
+    loop_words = "20 to 80 degC is the loop warming up, not the rise through the jacket"
     rows = (
         Row("138 m3/h of air", "start value", f"{138 / 3600 * air:.0f} W/K in air of 1.2 kg/m3 and 20 degC"),
-        Row(
-            "240 m3/h of air",
-            "after correction",
-            f"{240 / 3600 * air:.0f} W/K",
-            "turning up the air flow hid convection on the right flange",
-        ),
-        Row(
-            "8 l/min of 50/50 glycol",
-            "20 to 80 degC",
-            f"{rate:.0f} W/K: 12.4 kW heats it {loss / rate:.1f} K in one pass",
-            "20 to 80 degC is the loop warming up, not the rise through the jacket",
-        ),
+        Row("240 m3/h of air", "after correction", f"{240 / 3600 * air:.0f} W/K", air_words),
+        Row("8 l/min of 50/50 glycol", "20 to 80 degC", heat_words, loop_words),
     )
     return Section("Section 3: what the coolants can carry", "Heat capacity rates of the stated flows.", rows)
 
@@ -134,8 +116,6 @@ def text() -> str:
 
 def pictures() -> dict[str, object]:
     """File name -> matplotlib figure."""
-    from matplotlib.figure import Figure
-
     one, two = Figure((6, 3.4), layout="constrained"), Figure((6, 3.4), layout="constrained")
     amps = np.linspace(0, 511, 100)
     axes = one.subplots()

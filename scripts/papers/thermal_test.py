@@ -5,6 +5,7 @@ from __future__ import annotations
 from functools import cache
 
 import numpy as np
+from matplotlib.figure import Figure
 
 from extras.bench.factors.factorial import Ranking, full, morris, sobol
 from extras.bench.factors.screening import STEP, TABLE_I, WITH_GAP, Screening, screen, varied
@@ -120,32 +121,18 @@ def screening() -> Screening:
 def figure_11() -> Section:
     found = screening().effects["magnets"]
     step = screening().effects["winding minus magnets"]
-    names = {
-        "convection": "leads",
-        "emissivity": "leads",
-        "base": "leads",
-        "magnetic loss": "raises it",
-        "winding impregnation": "small",
-        "end-winding impregnation": "small",
-        "speed": "small",
-    }
+    small = ("winding impregnation", "end-winding impregnation", "speed")
+    names = {**dict.fromkeys(("convection", "emissivity", "base"), "leads"), "magnetic loss": "raises it"}
+    names |= dict.fromkeys(small, "small")
+    within = f"within Lenth's {found.simultaneous:.1f} K"
+    sizes = {f: found.effects[f.letter] for f in sorted(TABLE_I, key=lambda f: -abs(found.effects[f.letter]))}
     rows = [
-        Row(
-            f.name,
-            names[f.name],
-            f"{found.effects[f.letter]:+.1f} K",
-            "beyond chance" if f.letter in found.active else f"within Lenth's {found.simultaneous:.1f} K",
-        )
-        for f in sorted(TABLE_I, key=lambda f: -abs(found.effects[f.letter]))
+        Row(f.name, names[f.name], f"{size:+.1f} K", "beyond chance" if f.letter in found.active else within)
+        for f, size in sizes.items()
     ]
-    rows += [
-        Row(
-            "winding impregnation on the step winding to magnets",
-            "sets it",
-            f"{step.effects['D']:+.1f} K",
-            f"next: {step.words(step.ranked[1][0])} {step.ranked[1][1]:+.1f} K",
-        )
-    ]
+    name, following = "winding impregnation on the step winding to magnets", step.ranked[1]
+    next_words = f"next: {step.words(following[0])} {following[1]:+.1f} K"
+    rows.append(Row(name, "sets it", f"{step.effects['D']:+.1f} K", next_words))
     largest = {name: e.ranked[0] for name, e in screening().effects.items()}
     table = [("response", "largest effect", "high - low (K)")]
     table += [(name, screening().effects[name].words(w), f"{v:+.1f}") for name, (w, v) in largest.items()]
@@ -185,16 +172,9 @@ def ranked() -> dict[str, tuple[Ranking, Ranking]]:
 def rankings() -> Section:
     head = ("response", "factor", "Morris mu*", "+- 95 %", "Sobol ST", "+- 95 %")
     table = [
-        (
-            name,
-            factor,
-            f"{low.measure[factor]:.3g}",
-            f"{low.conf[factor]:.2g}",
-            f"{high.measure[factor]:.3f}",
-            f"{high.conf[factor]:.3f}",
-        )
+        (name, f, f"{low.measure[f]:.3g}", f"{low.conf[f]:.2g}", f"{high.measure[f]:.3f}", f"{high.conf[f]:.3f}")
         for name, (low, high) in ranked().items()
-        for factor in high.ranked
+        for f in high.ranked
     ]
     runs = next(iter(ranked().values()))
     words = (
@@ -243,39 +223,23 @@ def pictures() -> dict[str, object]:
     from scripts.papers.machines import pictures as drawn
 
     effects = screened(screening().effects["magnets"].document(), title="Effects on the magnets")
-    return {"figure-5.png": _figure_5(), "figure-6.png": _figure_6(), "figure-11.png": effects, **drawn()}
+    R, E = np.geomspace(0.4, 3.0, 25), np.linspace(80.0, 450.0, 25)
+    five = _bands(R, [winding(float(r)) for r in R], "cold resistance (ohm)", "Winding at a rise of 80 K")
+    six = _bands(E, [magnets(float(e), True) for e in E], "cold back-EMF (V)", "Magnets at a rise of 80 K")
+    return {"figure-5.png": five, "figure-6.png": six, "figure-11.png": effects, **drawn()}
 
 
-def _figure_5() -> object:
-    from matplotlib.figure import Figure
-
+def _bands(x: np.ndarray, found: list[PropagatedUncertainty], xlabel: str, title: str) -> Figure:
     figure = Figure((6, 3.4), layout="constrained")
     axes = figure.subplots()
-    R = np.geomspace(0.4, 3.0, 25)
-    found = [winding(float(r)) for r in R]
-    _bands(axes, R, found)
-    axes.set(xlabel="cold resistance (ohm)", ylabel="rise read (K)", title="Winding at a rise of 80 K")
-    return figure
-
-
-def _figure_6() -> object:
-    from matplotlib.figure import Figure
-
-    figure = Figure((6, 3.4), layout="constrained")
-    axes = figure.subplots()
-    E = np.linspace(80.0, 450.0, 25)
-    _bands(axes, E, [magnets(float(e), True) for e in E])
-    axes.set(xlabel="cold back-EMF (V)", ylabel="rise read (K)", title="Magnets at a rise of 80 K")
-    return figure
-
-
-def _bands(axes: object, x: np.ndarray, found: list[PropagatedUncertainty]) -> None:
     for words, pick in (
         ("worst case", lambda s: s.worst),
         ("GUM, 95 %", lambda s: s.first_order),
         ("Monte Carlo, 95 %", lambda s: s.interval),
     ):
         low, high = np.array([pick(s) for s in found]).T
-        (line,) = axes.plot(x, high, label=words, ls="--" if "Monte" in words else "-")  # type: ignore[attr-defined]
-        axes.plot(x, low, color=line.get_color(), ls=line.get_linestyle())  # type: ignore[attr-defined]
-    axes.legend()  # type: ignore[attr-defined]
+        (line,) = axes.plot(x, high, label=words, ls="--" if "Monte" in words else "-")
+        axes.plot(x, low, color=line.get_color(), ls=line.get_linestyle())
+    axes.legend()
+    axes.set(xlabel=xlabel, ylabel="rise read (K)", title=title)
+    return figure

@@ -50,9 +50,6 @@ class Losses:
         )
         return float(left), float(right)
 
-    def windage_loss(self, rpm: float) -> float:
-        return self.windage * (rpm / 1000) ** 2.8
-
     def iron_loss(self, current: float, rpm: float) -> float:
         """Bertotti: hysteresis f B^1.8, eddy f^2 B^2, excess (f B)^1.5, the sum being `iron` at 1000 rpm and 120 A.
 

@@ -122,7 +122,7 @@ class Plant:
         self._add(heat, "poles", (1 - losses.iron_rotor_share) * iron)
         shares = {"airgap": 0.5, "air.left": 0.25, "air.right": 0.25}
         stirring = sum(share * self.air.spread(fluid) for fluid, share in shares.items())
-        return heat, losses.windage_loss(now.rpm) * stirring
+        return heat, losses.windage * (now.rpm / 1000) ** 2.8 * stirring
 
     def _add(
         self, heat: Array, part: str, watts: float, factor: Callable[[Array], Array | float] = lambda _: 1.0

@@ -1,14 +1,17 @@
-"""The sheet beside each record of the PM machines: its columns, with the cold readings and the data of the meters."""
+"""Readings of the PM machines by meters that err, and the sheet beside each record with the data of these meters."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
-from pathlib import Path
 from typing import Any
 
-import tomlkit
+import numpy as np
+from numpy.typing import NDArray
 
+from simulated.physics.draws import Draws
 from simulated.road.files import inline
+
+Array = NDArray[np.float64]
 
 SWITCHES = {"none": (0, 0), "plate": (1, 0), "bench": (0, 1)}  # on_plate, on_bench
 PLACES = {"none": "on a wooden base", "plate": "on the aluminium plate", "bench": "on the test bench"}
@@ -61,5 +64,26 @@ def _resistance(name: str, cold: Mapping[str, float], ambient_end: float) -> dic
     }
 
 
-def write_sheet(path: Path, tables: Mapping[str, Any]) -> None:
-    path.write_text(tomlkit.dumps(dict(tables)), encoding="utf-8")
+# Ohmmeter and voltmeter: a gain and an offset for each session within the data sheet, and steps.
+SHEETS = {"ohm": (0.25e-2, 2e-3, 2e-3), "volt": (0.1e-2, 1.0, 0.1)}  # gain, offset, step in ohm or V
+
+
+def read(kind: str, true: Array | float, session: str, draws: Draws) -> Array:
+    """Readings of one session, in which the meter's error does not change."""
+    gain, offset, step = SHEETS[kind]
+    errors = draws.stream(f"meter.{kind}.{session}").uniform(-1.0, 1.0, 2)
+    draws.taken[f"meter.{kind}.{session}.gain"] = float(gain * errors[0])
+    draws.taken[f"meter.{kind}.{session}.offset"] = float(offset * errors[1])
+    seen = np.asarray(true, float) * (1 + gain * errors[0]) + offset * errors[1]
+    return np.asarray(np.round(seen / step) * step)
+
+
+def thermometer(true: Array | float, session: str, draws: Draws) -> Array:
+    """A thermometer with a bias of 0.2 K (1 sigma) per session, read to 0.1 K."""
+    seen = np.asarray(true, float) + draws.normal(f"thermometer.{session}.bias_K", 0.2, 0.4)
+    return np.asarray(np.round(seen, 1))
+
+
+def emf(cold_V: float, alpha: float, magnets: Array | float) -> Array:
+    """Line-to-line back-EMF (V) at 383 rpm; the magnets lose `alpha` per K above 20 degC."""
+    return cold_V * (1 + alpha * (np.asarray(magnets, float) - 20.0))

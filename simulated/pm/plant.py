@@ -107,11 +107,8 @@ def solids(machine: Any, draws: Draws) -> dict[str, Solid]:
     for part in machine.parts:
         found, name = machine.material_of(part.name), _side(part.name)
         factor = draws.around(f"conductivity.{name}", 1.0, 0.20 if name == "slot.gap" else 0.08)
-        out[part.name] = Solid(
-            (factor * found.k_plane, factor * found.k_axial),
-            common * found.rho * found.cp,
-            SLOPES.get(found.name, RESIN),
-        )
+        k, rho_c = (factor * found.k_plane, factor * found.k_axial), common * found.rho * found.cp
+        out[part.name] = Solid(k, rho_c, SLOPES.get(found.name, RESIN))
     return out
 
 
@@ -179,9 +176,8 @@ class ClosedAir:
         return np.zeros((self.size, self.size)), np.zeros(self.size)
 
 
-def draw(draws: Draws, geometry: object, base: str) -> PmFilms:
+def draw(draws: Draws, geometry: Any, base: str) -> PmFilms:
     """base : "none", "plate" or "bench"; the same draws for every machine, each base with its own emissivity."""
-    g: object = geometry
     body = ("stator.core", "endcap.left", "endcap.right", "bearing.left", "bearing.right", "shaft")
     common = draws.around("natural.body", 1.0, 0.15)
     factors = {part: common * draws.around(f"natural.{part}", 1.0, 0.04) for part in (*body, "foot")}
@@ -189,11 +185,5 @@ def draw(draws: Draws, geometry: object, base: str) -> PmFilms:
     factors["base"] = draws.around(f"natural.base.{base}", 1.0, 0.15) if base != "none" else 1.0
     nominal = {"none": 0.1, "plate": 0.03, "bench": 0.10}[base]
     bare = draws.around(f"emissivity.base.{base}", nominal, 0.3) if base != "none" else nominal
-    return PmFilms(
-        factors,
-        min(draws.around("emissivity.body", 0.85, 0.06), 0.95),
-        bare,
-        g.stator.outer_diameter,  # type: ignore[attr-defined]
-        g.stator.bore_diameter / 2 - g.stator.air_gap,
-        g.stator.air_gap,  # type: ignore[attr-defined]
-    )
+    emissivity, s = min(draws.around("emissivity.body", 0.85, 0.06), 0.95), geometry.stator
+    return PmFilms(factors, emissivity, bare, s.outer_diameter, s.bore_diameter / 2 - s.air_gap, s.air_gap)

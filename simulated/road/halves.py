@@ -146,11 +146,6 @@ def _together(a: NamedMesh, b: NamedMesh) -> NamedMesh:
     move, more = len(a.points), len(a.parts)
     patches = {name: Patch(p.part, p.fluid, p.facets + move) for name, p in b.patches.items()}
     contacts = {name: Contact(c.a, c.b, c.facets + move) for name, c in b.contacts.items()}
-    return NamedMesh(
-        np.concatenate([a.points, b.points]),
-        np.concatenate([a.tets, b.tets + move]),
-        np.concatenate([a.region, b.region + more]),
-        (*a.parts, *b.parts),
-        {**a.patches, **patches},
-        {**a.contacts, **contacts},
-    )
+    points, tets = np.concatenate([a.points, b.points]), np.concatenate([a.tets, b.tets + move])
+    region, parts = np.concatenate([a.region, b.region + more]), (*a.parts, *b.parts)
+    return NamedMesh(points, tets, region, parts, {**a.patches, **patches}, {**a.contacts, **contacts})

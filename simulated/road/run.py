@@ -41,15 +41,8 @@ class Result:
 def conditions(drive: Drive, begin: int, end: int) -> Conditions:
     """Means of the seconds from begin to end."""
     part = slice(begin, end)
-    means = (
-        drive.current[part],
-        drive.current[part] ** 2,
-        drive.rpm[part],
-        drive.vehicle[part],
-        drive.flow[part],
-        drive.ambient[part],
-    )
-    return Conditions(*(float(np.mean(x)) for x in means))
+    columns = (drive.current, drive.current**2, drive.rpm, drive.vehicle, drive.flow, drive.ambient)
+    return Conditions(*(float(np.mean(x[part])) for x in columns))
 
 
 def run(

@@ -6,7 +6,7 @@ import pytest
 from simulated.physics.draws import Draws
 from simulated.physics.materials import nominal_contact
 from simulated.physics.surfaces import Conditions
-from simulated.pm import files as pm_files, meters as pm_meters
+from simulated.pm import files as pm_files
 from simulated.pm.plant import contacts, draw
 
 AT_REST = Conditions(8.0, 64.0, 0.0, 0.0, 0.0, 20.0)
@@ -17,7 +17,7 @@ AT_REST = Conditions(8.0, 64.0, 0.0, 0.0, 0.0, 20.0)
 )
 def test_meters_stay_within_their_data_sheet(kind, true, gain, offset, step):
     draws = Draws(7)
-    errors = [float(pm_meters.read(kind, true, f"s{i}", draws)) - true for i in range(200)]
+    errors = [float(pm_files.read(kind, true, f"s{i}", draws)) - true for i in range(200)]
     limit = gain * true + offset
     assert max(np.abs(errors)) <= limit + step / 2
     assert max(np.abs(errors)) > 0.7 * limit
@@ -27,15 +27,15 @@ def test_meters_stay_within_their_data_sheet(kind, true, gain, offset, step):
 def test_one_session_has_one_error():
     """A meter's error does not change between readings of one session, only the steps remain."""
     draws, true = Draws(7), np.linspace(2.7, 3.5, 50)
-    off = pm_meters.read("ohm", true, "hot", draws) - true
+    off = pm_files.read("ohm", true, "hot", draws) - true
     line = np.polyval(np.polyfit(true, off, 1), true)
     assert np.abs(off - line).max() < 2e-3
-    again = pm_meters.read("ohm", true, "hot", draws) - true
+    again = pm_files.read("ohm", true, "hot", draws) - true
     assert np.array_equal(off, again)
 
 
 def test_back_emf_falls_with_the_magnets():
-    assert pm_meters.emf(290.0, -1e-3, 120.0) == pytest.approx(261.0)
+    assert pm_files.emf(290.0, -1e-3, 120.0) == pytest.approx(261.0)
 
 
 def test_films_of_still_air():

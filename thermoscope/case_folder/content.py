@@ -8,18 +8,16 @@ from collections.abc import Iterable, Iterator
 from functools import cache
 from importlib.util import find_spec
 from pathlib import Path
-from typing import TYPE_CHECKING, Protocol
+from typing import Protocol
 
 import numpy as np
 
 from geom.arrays import Array
 from geom.plugins import plugins
 from lumped.condensation.recovery import Shapes
+from measured.case import Test
 from thermoscope.case_folder.settings import Settings
 from validation.comparison.error_budget import OpenCase
-
-if TYPE_CHECKING:
-    from measured.case import Test
 
 ROOMS = ("geom", "fem", "lumped", "measured", "validation", "thermoscope")  # packages that decide what a model tells
 ADDED = ("effects", "families", "formats", "quantities", "still_air", "moving_air")  # groups that others add to

@@ -173,11 +173,8 @@ def _columns(path: Path, top: Table, head: Table) -> Columns:
 def _counted(instants: float, where: str) -> None:
     """A cycle has so many instants that a run of it makes sense and fits into memory."""
     if not LEAST <= instants <= INSTANTS.most:
-        raise InputError(
-            f"the cycle has {instants:.3g} instants",
-            where,
-            f"{LEAST} to {INSTANTS.most:,} ({INSTANTS.variable}): check step_s and time_unit",
-        )
+        right = f"{LEAST} to {INSTANTS.most:,} ({INSTANTS.variable}): check step_s and time_unit"
+        raise InputError(f"the cycle has {instants:.3g} instants", where, right)
 
 
 def _duty(top: Table) -> tuple[Array, dict[str, Array], dict[str, Array]]:

@@ -62,11 +62,11 @@ def _reversed(p: Patient, network: Network) -> Iterator[Finding]:
         rise = float(np.median([m for n, m in moves.items() if n != name] or [0.0]))
         below = name not in cold and np.nanmin(columns[name]) < least
         if below and rise > WARM_K and move < -max(WARM_K, SWAPPED * rise):
-            yield p.finding(
-                name,
-                f"falls by {-move:.0f} K while the others rise: are its wires swapped, or is it cooled below the room?",
-                "use = false, or the wires the right way round; leave it where something cools it",
+            what = (
+                f"falls by {-move:.0f} K while the others rise: are its wires swapped, or is it cooled below the room?"
             )
+            cure = "use = false, or the wires the right way round; leave it where something cools it"
+            yield p.finding(name, what, cure)
 
 
 def _all_units(p: Patient, network: Network) -> Iterator[Finding]:
@@ -78,9 +78,8 @@ def _all_units(p: Patient, network: Network) -> Iterator[Finding]:
     outside = any(c.is_temperature and c.place in network.boundaries for c in p.sheet.columns)
     for (cold, hot), unit, word in ((ROOM_K, "K", "kelvin"), (ROOM_F, "degF", "Fahrenheit")):
         if cold < low and high < hot and (unit == "K" or (outside and high - low < NEAR_F)):
-            yield p.finding(
-                "all temperatures", f"start at {low:.0f} to {high:.0f} degC: {word}?", f'unit = "{unit}" for each'
-            )
+            what = f"start at {low:.0f} to {high:.0f} degC: {word}?"
+            yield p.finding("all temperatures", what, f'unit = "{unit}" for each')
 
 
 def _within(p: Patient, network: Network) -> list[Column]:
@@ -93,34 +92,22 @@ def _declared(p: Patient, network: Network) -> Iterator[Finding]:
     starts, span = first_readings(p), float(p.samples.time[-1])
     initial = p.sheet.initial
     for c in (c for c in _within(p, network) if c.name in starts):
-        first = (
-            initial if isinstance(initial, float) else initial.get(c.place) if not isinstance(initial, str) else None
-        )
-        if first is not None and abs(first - starts[c.name]) > OFFSET_K:
-            yield p.finding(
-                c.name,
-                f"starts at {starts[c.name]:.0f} degC, the sheet says initial = {first:g}",
-                'initial = "first-readings"',
-            )
+        first = initial.get(c.place) if isinstance(initial, Mapping) else initial
+        if first is not None and not isinstance(first, str) and abs(first - starts[c.name]) > OFFSET_K:
+            what = f"starts at {starts[c.name]:.0f} degC, the sheet says initial = {first:g}"
+            yield p.finding(c.name, what, 'initial = "first-readings"')
         values, lag = p.samples.values[c.name], c.lag_s
         move = float(np.nanmax(values) - np.nanmin(values))
         if c.sigma_K > max(move, WIDE_K):
-            yield p.finding(
-                c.name,
-                f"its sigma_K = {c.sigma_K:g} is more than it moves ({move:.3g} K): no error of the model could show",
-                "the 1-sigma of the sensor's data sheet",
-            )
+            what = f"its sigma_K = {c.sigma_K:g} is more than it moves ({move:.3g} K): no error of the model could show"
+            yield p.finding(c.name, what, "the 1-sigma of the sensor's data sheet")
         if lag > span:
-            yield p.finding(
-                c.name, f"its lag of {lag:g} s is longer than the test ({span:g} s)", "lag_s and filter_s in seconds"
-            )
+            what = f"its lag of {lag:g} s is longer than the test ({span:g} s)"
+            yield p.finding(c.name, what, "lag_s and filter_s in seconds")
     for name, events in p.sheet.events.items():
         if events.at_s[-1] > p.samples.start_s + span:
-            yield p.finding(
-                name,
-                f"switches at {events.at_s[-1]:g} s, after the test has ended",
-                "at_s in seconds from the first row",
-            )
+            what = f"switches at {events.at_s[-1]:g} s, after the test has ended"
+            yield p.finding(name, what, "at_s in seconds from the first row")
 
 
 def _power(p: Patient, network: Network) -> Iterator[Finding]:
@@ -132,11 +119,8 @@ def _power(p: Patient, network: Network) -> Iterator[Finding]:
     came = sum(float(np.nanmean(np.abs(p.samples.values[c.name]))) for c in columns) * span
     if columns and rise > WARM_K and 0.0 < STORED * came < heat_J:
         names = ", ".join(c.name for c in columns)
-        yield p.finding(
-            names,
-            f"{came:.3g} J came in, {heat_J:.3g} J would be needed for the rise of {rise:.0f} K: kW?",
-            'unit = "kW", or check [nodes] C_J_K',
-        )
+        what = f"{came:.3g} J came in, {heat_J:.3g} J would be needed for the rise of {rise:.0f} K: kW?"
+        yield p.finding(names, what, 'unit = "kW", or check [nodes] C_J_K')
 
 
 def _frozen(p: Patient, network: Network) -> Iterator[Finding]:
@@ -181,12 +165,8 @@ def _rates(patients: list[Patient]) -> Iterator[Finding]:
     usual = float(np.median(list(steps.values()))) if steps else 0.0
     for name, step in steps.items():
         if not usual / RATES <= step <= usual * RATES:
-            yield Finding(
-                name,
-                "clock",
-                f"rows are {step:g} s apart, {usual:g} s in the other tests: ms, min or h?",
-                'time_unit = "ms" (or min, h)',
-            )
+            what = f"rows are {step:g} s apart, {usual:g} s in the other tests: ms, min or h?"
+            yield Finding(name, "clock", what, 'time_unit = "ms" (or min, h)')
 
 
 def _copies(patients: list[Patient]) -> Iterator[Finding]:
@@ -201,16 +181,10 @@ def _alone(patients: list[Patient]) -> Iterator[Finding]:
     """One test: what it can still be used for."""
     if len(patients) == 1:
         steady = all(np.unique(x[np.isfinite(x)]).size < 2 for x in patients[0].samples.values.values())
-        judged = (
-            "no effect is judged, for it is one steady state" if steady else "an effect is judged on its second half"
-        )
-        yield Finding(
-            patients[0].name,
-            "",
-            f"is the only test: nothing unseen judges the model, and {judged}",
-            'a further recording with role = "hold-out"',
-            True,
-        )
+        half = "an effect is judged on its second half"
+        judged = "no effect is judged, for it is one steady state" if steady else half
+        what = f"is the only test: nothing unseen judges the model, and {judged}"
+        yield Finding(patients[0].name, "", what, 'a further recording with role = "hold-out"', True)
 
 
 def _unused(patients: list[Patient], network: Network) -> Iterator[Finding]:
@@ -219,21 +193,16 @@ def _unused(patients: list[Patient], network: Network) -> Iterator[Finding]:
     column_of = {name: c.name for p in patients for c in p.sheet.columns for name in [c.feeds] if name}
     column_of |= {name: "" for p in patients for name in p.sheet.events}
     squared = {column for p in patients for of in p.sheet.squares.values() for column in of}
+    what = "no law of the network reads this input yet"
+    cure = "leave it, an effect may; or input = the name of one that a law reads"
     for name, column in sorted(column_of.items()):
         if name not in read and column not in squared:
-            yield Finding(
-                "",
-                name,
-                "no law of the network reads this input yet",
-                "leave it, an effect may; or input = the name of one that a law reads",
-                True,
-            )
+            yield Finding("", name, what, cure, True)
     for name in sorted(n for n in read & set(column_of) if column_of[n]):
         values = np.concatenate([p.inputs[name] for p in patients if name in p.inputs])
         if np.unique(values[np.isfinite(values)]).size < 2:
-            yield Finding(
-                "", name, "no test moves this input: what depends on it cannot be told", "a test in which it changes"
-            )
+            what = "no test moves this input: what depends on it cannot be told"
+            yield Finding("", name, what, "a test in which it changes")
 
 
 def _switched(patients: list[Patient], network: Network) -> Iterator[Finding]:
@@ -248,12 +217,8 @@ def _switched(patients: list[Patient], network: Network) -> Iterator[Finding]:
         for item in network.elements:
             terms = item.law.terms if isinstance(item.law, InputPower) else ()
             for _, _, exponent in (t for t in terms if t[0] == name and t[2] != 1.0):
-                yield Finding(
-                    "",
-                    name,
-                    f"is only on or off: the exponent {exponent:g} in '{item.name}' says nothing",
-                    "exponent = 1.0, or a column that says how much",
-                )
+                what = f"is only on or off: the exponent {exponent:g} in '{item.name}' says nothing"
+                yield Finding("", name, what, "exponent = 1.0, or a column that says how much")
 
 
 def _cold(network: Network) -> Iterator[Finding]:
@@ -277,10 +242,5 @@ def _stores(network: Network) -> Iterator[Finding]:
             partners[i] |= ends - {i}
     for i, name in enumerate(network.states):
         if "#" not in name and i not in heated and len(partners[i]) == 1 and min(partners[i]) < len(network.states):
-            yield Finding(
-                "",
-                name,
-                "nothing heats or cools this node but one other node: it only stores heat",
-                "a loss at it, or a second link",
-                True,
-            )
+            what = "nothing heats or cools this node but one other node: it only stores heat"
+            yield Finding("", name, what, "a loss at it, or a second link", True)

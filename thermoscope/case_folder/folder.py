@@ -26,7 +26,8 @@ from thermoscope.case_folder.quantities import with_quantities
 from thermoscope.case_folder.recording_checks import Finding, Patient
 from thermoscope.case_folder.settings import Entry, Settings, read_settings
 from validation.counting import counted
-from validation.parameters.unknowns import case_reference, matching, standing, working
+from validation.effects import effect
+from validation.parameters.unknowns import case_reference, matching, scene_of, standing, working
 
 if TYPE_CHECKING:
     from geom import Machine
@@ -151,20 +152,13 @@ def load_case(
         small = with_quantities(built.small, sheets, tests, history.reference)
         every = [(p.name, rows_of(p.sheet, p.samples, small)) for p in patients.values()]
         low = LowFidelity(network, small, {(test, name): row for test, rows in every for name, row in rows.items()})
-    case = Case(
-        settings.name,
-        history.model(network, history.last),
-        tests,
-        _free(network, settings),
-        *split_answers(settings.doubt, history.last.answers),
-        low,
-        settings.odds,
-    )
+    model, free = history.model(network, history.last), _free(network, settings)
+    doubt, answers = split_answers(settings.doubt, history.last.answers)
+    case = Case(settings.name, model, tests, free, doubt, answers, low, settings.odds)
     steps = {r.test.name: r.step for r in read}
+    positions = {c.name: tuple(1e-3 * x for x in c.position_mm) for s in sheets for c in s.columns if c.position_mm}
     notes = (*notes, *_assumed_reference(case, settings), *_fitted_holdouts(case))
-    return Folder(
-        settings, _checked(case, history, settings), history, notes, _positions(sheets), built, findings, steps
-    )
+    return Folder(settings, _checked(case, history, settings), history, notes, positions, built, findings, steps)
 
 
 READ = 32  # recordings that a process keeps: a command, or the demo, works on one case
@@ -226,11 +220,6 @@ def _fitted_holdouts(case: Case) -> list[str]:
     return [f"{names}: held out, but the model was fitted to it, so its error says little; {right}"] if names else []
 
 
-def _positions(sheets: Iterable[Sheet]) -> dict[str, tuple[float, ...]]:
-    columns = [c for sheet in sheets for c in sheet.columns if c.position_mm]
-    return {c.name: tuple(1e-3 * x for x in c.position_mm) for c in columns}
-
-
 def find_case(name: str | Path, machines: Iterable[str] = ()) -> Path:
     """A case folder by its path or the name of a case that comes along.  machines : what may be meant as well"""
     path = Path(name)
@@ -256,10 +245,9 @@ def _free(network: Network, settings: Settings) -> tuple[Parameter, ...]:
     """The parameters that calibration may move; a pattern that matches nothing is an error."""
     for pattern in settings.free:
         if not matching(network, [pattern]):
+            where = f"{settings.path / 'case.toml'} [calibration] free"
             right = suggestion(pattern, [p.name for p in network.parameters])
-            raise InputError(
-                f"'{pattern}' matches no parameter", f"{settings.path / 'case.toml'} [calibration] free", right
-            )
+            raise InputError(f"'{pattern}' matches no parameter", where, right)
     return matching(network, settings.free)
 
 
@@ -305,8 +293,6 @@ def load_machine_file(path: Path) -> Machine:
 def _checked(case: Case, history: History, settings: Settings) -> Case:
     """The model's effects can sit where model.toml has them, its values belong to parameters, as what tests free."""
     from validation.calibration.staged_fit import fit_stages
-    from validation.effects import effect
-    from validation.parameters.unknowns import scene_of
 
     where = f"{settings.model_file} revision {history.last.number}"
     try:

@@ -105,10 +105,8 @@ def load_history(path: Path) -> History:
     revisions = tuple(_revision(t) for t in top.listed("revision"))
     lines = path.read_bytes().count(b"\n")
     if top.number("lines", lines) != lines or not revisions:  # the first line says how many: one that is cut off has it
-        raise top.error(
-            f"has {lines} lines, not as many as were written: it was cut off or changed by hand",
-            "the file as thermoscope wrote it, or none: the model as declared",
-        )
+        what = f"has {lines} lines, not as many as were written: it was cut off or changed by hand"
+        raise top.error(what, "the file as thermoscope wrote it, or none: the model as declared")
     top.close()
     if [r.number for r in revisions] != list(range(1, len(revisions) + 1)):
         raise top.error("revisions are not numbered 1, 2, 3, ...", "the file as thermoscope wrote it")
@@ -126,11 +124,8 @@ def save_history(path: Path, history: History, before: History) -> History:
         standing = load_history(path)
         if standing != before:
             what = f"the model was changed by another tab or command: it is at revision {standing.last.number}, this "
-            raise InputError(
-                f"{what}step began at {before.last.number}",
-                str(path),
-                "the step again (in the workbench 'take over' first)",
-            )
+            what += f"step began at {before.last.number}"
+            raise InputError(what, str(path), "the step again (in the workbench 'take over' first)")
         document, revisions = tomlkit.document(), tomlkit.aot()
         document.add("lines", 0)
         document.add(tomlkit.comment(HEADER))
@@ -163,7 +158,8 @@ def checked_values(revision: Revision, parameters: Iterable[Parameter], where: s
 
 
 def _revision(table: Table) -> Revision:
-    evidence = _inner(table, "evidence")
+    evidence, rmse = _inner(table, "evidence"), _inner(table, "rmse_K")
+    tests = {name: _inner(rmse, name) for name in rmse.data}
     out = Revision(
         int(table.number("number")),
         table.word("action", None, ACTIONS),
@@ -171,7 +167,7 @@ def _revision(table: Table) -> Revision:
         table.word("effect", ""),
         _inner(table, "values").constants("values"),
         _pairs(_inner(table, "intervals")),
-        _before_after(_inner(table, "rmse_K")),
+        {name: (t.number("before"), t.number("after")) for name, t in tests.items()},
         table.word("why", ""),
         {k: v if isinstance(v, str) else evidence.number(k, of="value") for k, v in evidence.data.items()},
         _answers(_inner(table, "answers")),
@@ -209,15 +205,9 @@ def _reference(table: Table) -> Reference | None:
 
 
 def _signal(table: Table) -> SignalReference:
-    low, high = table.number("low"), table.number("high")
-    out = SignalReference(
-        table.number("level"),
-        low,
-        high,
-        _optional(table, "at_load"),
-        table.word("quantity", ""),
-        table.flag("machine", False),
-    )
+    level, low, high = (table.number(key) for key in ("level", "low", "high"))
+    at_load, quantity = _optional(table, "at_load"), table.word("quantity", "")
+    out = SignalReference(level, low, high, at_load, quantity, table.flag("machine", False))
     table.close()
     return out
 
@@ -250,8 +240,3 @@ def _pairs(table: Table) -> dict[str, Pair]:
             raise table.error(f"{name} = {list(pair)} is not an interval", "[low, high]")
         out[name] = (pair[0], pair[1])
     return out
-
-
-def _before_after(table: Table) -> dict[str, Pair]:
-    tests = {name: _inner(table, name) for name in table.data}
-    return {name: (t.number("before"), t.number("after")) for name, t in tests.items()}

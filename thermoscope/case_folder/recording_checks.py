@@ -10,6 +10,7 @@ import numpy as np
 
 from geom.arrays import Array, Mask
 from geom.constants import ZERO_C
+from geom.text import counted
 from measured.recordings.readings import START_S
 from measured.recordings.sheet import Sheet
 from measured.recordings.tables import Samples
@@ -80,9 +81,8 @@ def _units(p: Patient) -> Iterator[Finding]:
         if abs(start - ZERO_C - usual) < OFF_K:
             yield p.finding(name, f"starts at {start:.0f} degC, the others at {usual:.0f}: kelvin?", 'unit = "K"')
         elif abs((start - 32.0) / 1.8 - usual) < OFF_K / 3 and np.ptp(others or [usual]) < OFFSET_K:
-            yield p.finding(
-                name, f"starts at {start:.0f} degC, the others at {usual:.0f}: Fahrenheit?", 'unit = "degF"'
-            )
+            what = f"starts at {start:.0f} degC, the others at {usual:.0f}: Fahrenheit?"
+            yield p.finding(name, what, 'unit = "degF"')
 
 
 def _sparse(p: Patient) -> Iterator[Finding]:
@@ -91,22 +91,15 @@ def _sparse(p: Patient) -> Iterator[Finding]:
     for name, values in p.temperatures.items():
         count = int(np.isfinite(values).sum())
         if count < LEAST_READINGS and name not in after:
-            yield p.finding(
-                name,
-                f"was read {count} {'time' if count == 1 else 'times'} in the whole test: that "
-                "says next to nothing of the model",
-                "readings over the test, or use = false",
-            )
+            what = f"was read {counted(count, 'time')} in the whole test: that says next to nothing of the model"
+            yield p.finding(name, what, "readings over the test, or use = false")
 
 
 def _clock(p: Patient) -> Iterator[Finding]:
     low, high = np.percentile(np.diff(p.samples.time), [10.0, 90.0])
     if high - low > UNEVEN * high:
-        yield p.finding(
-            "clock",
-            f"rows come unevenly, {low:g} to {high:g} s apart",
-            "check the recorder's clock; readings are averaged onto the grid as they stand",
-        )
+        cure = "check the recorder's clock; readings are averaged onto the grid as they stand"
+        yield p.finding("clock", f"rows come unevenly, {low:g} to {high:g} s apart", cure)
     for a, b in p.samples.gaps:
         yield p.finding("clock", f"no rows from {a:g} to {b:g} s", "split the test there if the machine ran on")
 
@@ -125,11 +118,8 @@ def _spikes(p: Patient) -> Iterator[Finding]:
         out = np.flatnonzero(back & (leap > max(SPIKE_K, SPIKE_TIMES * float(np.median(np.abs(np.diff(y)))))))
         if out.size:
             at = p.samples.time[finite[out[0] + 1]]
-            yield p.finding(
-                name,
-                f"{out.size} readings leap by {leap[out].max():.0f} K and come back, first at {at:g} s",
-                "empty those cells; look for a loose contact",
-            )
+            what = f"{out.size} readings leap by {leap[out].max():.0f} K and come back, first at {at:g} s"
+            yield p.finding(name, what, "empty those cells; look for a loose contact")
 
 
 def _moved(p: Patient, name: str) -> Mask:

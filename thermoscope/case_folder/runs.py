@@ -28,6 +28,7 @@ from thermoscope.case_folder.folder import Folder
 from thermoscope.case_folder.history import History, Revision
 from validation.comparison.compare import physical
 from validation.comparison.predict import heat_model, predict, record
+from validation.effects import effect
 from validation.effects.during import During
 from validation.parameters.unknowns import effects_of, scene_of, standing, to_value, value_words, working
 from validation.threads import side_by_side
@@ -218,8 +219,6 @@ def steps(folder: Folder) -> list[dict[str, Any]]:
 
 def added_words(case: Case, names: Iterable[str]) -> str:
     """Effects as an engineer says them: "forced convection by vehicle wind at flange.right"."""
-    from validation.effects import effect
-
     return " and ".join(effect(name, scene_of(case)).statement for name in names)
 
 
@@ -273,18 +272,9 @@ def parameters(folder: Folder) -> list[dict[str, Any]]:
             continue
         low, high = (max(p.low, min(p.high, to_value(p, s * NORMAL_95 * p.prior_sd))) for s in (-1.0, 1.0))
         a, b = last.intervals[p.name]
-        out.append(
-            {
-                "name": p.name,
-                "words": value_words(p.name),
-                "value": last.values[p.name],
-                "unit": p.unit,
-                "ci95": [a, b],
-                "prior": [p.value, low, high],
-                "of_measurement": of_measurement(p),
-                "identified": b - a < BLIND * (high - low),
-            }
-        )
+        size = {"value": last.values[p.name], "unit": p.unit, "ci95": [a, b], "prior": [p.value, low, high]}
+        kind = {"of_measurement": of_measurement(p), "identified": b - a < BLIND * (high - low)}
+        out.append({"name": p.name, "words": value_words(p.name), **size, **kind})
     return sorted(out, key=effects_first)
 
 

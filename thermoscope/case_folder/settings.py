@@ -98,24 +98,8 @@ def read_settings(path: Path, untested: bool = False) -> Settings:
     if not tests and not untested:
         raise InputError("no tests", str(file), '[tests.NAME] with role = "calibrate"')
     entries = tuple(_entry(path, n, t) for n, t in tests.items())
-    return Settings(
-        path,
-        name,
-        description,
-        machine,
-        network,
-        sample,
-        model_K,
-        entries,
-        free,
-        axial_m,
-        kinds,
-        starts,
-        seed,
-        widened(doubt, f"{file} [doubt]"),
-        odds,
-        guesses,
-    )
+    of_case = (path, name, description, machine, network, sample, model_K, entries)
+    return Settings(*of_case, free, axial_m, kinds, starts, seed, widened(doubt, f"{file} [doubt]"), odds, guesses)
 
 
 def _title(head: Table, usual: str) -> str:

@@ -72,17 +72,12 @@ def _read(folder: CaseWithFiles, file: Path) -> StoredComparison:
         document = json.loads(str(archive["arr_0"]))
         readings = {test.name: archive[f"arr_{i}"] for i, test in enumerate(folder.case.tests, 1)}
     model, effects = folder.case.model, tuple(e.name for e in folder.case.model.effects)
-    tests = tuple(
-        TestError(
-            row["name"],
-            row["role"],
-            tuple(ChannelError(**c) for c in row["channels"]),
-            tuple(Uncertainty(**u) for u in row["uncertainty"]),
-        )
-        for row in document["tests"]
-    )
+    tests = []
+    for row in document["tests"]:
+        channels, doubts = (ChannelError(**c) for c in row["channels"]), (Uncertainty(**u) for u in row["uncertainty"])
+        tests.append(TestError(row["name"], row["role"], tuple(channels), tuple(doubts)))
     budgets = {n: ErrorBudget(tuple(PlaceError(**p) for p in places)) for n, places in document["budgets"].items()}
-    comparison = Comparison(folder.case.name, model.revision, effects, tests, model.network.identities)
+    comparison = Comparison(folder.case.name, model.revision, effects, tuple(tests), model.network.identities)
     return StoredComparison(comparison, budgets, readings)
 
 

@@ -30,11 +30,9 @@ def tables(folder: Folder) -> list[Table]:
     errors = [{"test": t.name, "role": t.role, **c.document()} for t in folder.compared.tests for c in t.channels]
     keys = dict.fromkeys(key for record in errors for key in record)
     columns = "parameter=name | value | unit | prior sd=prior_sd | source"
-    values = folder.case.model.values
+    parameters, values = folder.case.model.network.parameters, folder.case.model.values
     out = [
-        Table.of(
-            "parameters", folder.case.model.network.parameters, columns, value=lambda p: values.get(p.name, p.value)
-        ),
+        Table.of("parameters", parameters, columns, value=lambda p: values.get(p.name, p.value)),
         Table("errors", list(keys), [[record.get(key) for key in keys] for record in errors]),
     ]
     for test in folder.case.tests:
@@ -49,9 +47,8 @@ def tables(folder: Folder) -> list[Table]:
 
 def _over_time(title: str, test: Test, columns: Mapping[str, Any]) -> Table:
     """Columns of a test beside its time (s)."""
-    names, *rows = rows_of(
-        {"time_s": test.time, **{n: np.broadcast_to(v, test.time.shape) for n, v in columns.items()}}
-    )
+    wide = {name: np.broadcast_to(v, test.time.shape) for name, v in columns.items()}
+    names, *rows = rows_of({"time_s": test.time, **wide})
     return Table(title, names, rows)
 
 

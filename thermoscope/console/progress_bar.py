@@ -233,11 +233,8 @@ def _remaining(remaining: tuple[float, float]) -> str:
     share, rest = remaining
     slow = rest / (100.0 * (1.0 - share) * SLOW_S)  # time of a percent
     fine = 10 ** min(max(ceil(log10(max(slow, 1e-9))), 0), 2)
-    return f"{floor(100 * fine * share) / fine:.{len(str(fine)) - 1}f} %, about {_span(rest)} left"
-
-
-def _span(seconds: float) -> str:
-    return f"{seconds:.0f} s" if seconds < 90 else f"{seconds / 60:.0f} min"
+    span = f"{rest:.0f} s" if rest < 90 else f"{rest / 60:.0f} min"
+    return f"{floor(100 * fine * share) / fine:.{len(str(fine)) - 1}f} %, about {span} left"
 
 
 @contextmanager

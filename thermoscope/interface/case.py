@@ -14,6 +14,9 @@ from thermoscope.case_folder.folder import Folder, find_case, load_case
 from thermoscope.case_folder.history import History, save_history
 from thermoscope.interface.notebook import Progress, hearing, silent
 from thermoscope.parts import explained
+from validation.effects import catalogue
+from validation.effects.registry import kinds
+from validation.parameters.unknowns import scene_of, standing
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -66,8 +69,6 @@ class Case(TableResult):
     @property
     def network(self) -> Network:
         """The network with the effects that were added."""
-        from validation.parameters.unknowns import standing
-
         return standing(self.folder.case)
 
     @property
@@ -82,9 +83,6 @@ class Case(TableResult):
 
     def candidates(self) -> tuple[Effect, ...]:
         """Every effect at every place of this network where it can sit."""
-        from validation.effects import catalogue
-        from validation.parameters.unknowns import scene_of
-
         return catalogue(scene_of(self.folder.case), self.folder.settings.kinds)
 
     def compare(self) -> Comparison:
@@ -205,6 +203,4 @@ def effects() -> Effects:
 
     Each says its title, unit, typical size, needs, source and isolating_test.
     """
-    from validation.effects.registry import kinds
-
     return Effects(kinds())

@@ -129,11 +129,8 @@ class Machine(TableResult):
             check = crosscheck(b.field, b.network, point, ambient_C, shares=loss_shares(b.machine, b.network))
         except NoSolution as fault:
             there = ", ".join(f"{name} = {value:g}" for name, value in point.items())
-            raise InputError(
-                f"does not settle at {there}: its losses grow faster than its cooling",
-                self.name,
-                "a smaller load: field(current_A=...)",
-            ) from fault
+            what = f"does not settle at {there}: its losses grow faster than its cooling"
+            raise InputError(what, self.name, "a smaller load: field(current_A=...)") from fault
         return Field(b, check)
 
 

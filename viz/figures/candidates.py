@@ -121,15 +121,8 @@ def confusion(names: Sequence[str], cosine: Array, *, png: str | Path | None = N
     ax.imshow(c, cmap="Blues", vmin=0, vmax=1)
     for i, j in np.ndindex(c.shape):
         if i != j and c[i, j] >= 0.5:
-            ax.text(
-                j,
-                i,
-                f"{c[i, j]:.2f}".lstrip("0"),
-                ha="center",
-                va="center",
-                fontsize=7.5,
-                color="white" if c[i, j] > 0.6 else "black",
-            )
+            words, colour = f"{c[i, j]:.2f}".lstrip("0"), "white" if c[i, j] > 0.6 else "black"
+            ax.text(j, i, words, ha="center", va="center", fontsize=7.5, color=colour)
     ax.set_xticks(range(len(names)), [str(i + 1) for i in range(len(names))])
     ax.set_yticks(range(len(names)), [f"{textwrap.fill(name, LABEL)}  {i}" for i, name in enumerate(names, 1)])
     ax.grid(False)

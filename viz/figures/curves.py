@@ -1,18 +1,21 @@
-"""Measured against modelled over time, sensor by sensor.
+"""Measured against modelled over time, sensor by sensor; and the columns of a recording as they were understood.
 
 Measured is ink, the model is blue, an earlier model is dashed orange; nothing else has a colour unless it is wrong.
 """
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
 
+from geom.arrays import Array
 from geom.errors import InputError
 from validation.comparison.uncertainty import RULE
-from viz.colours import LIGHT, ORANGE, VERDICT
+from viz.colours import BLUE, LIGHT, ORANGE, VERDICT
 from viz.data import Comparison, input_title, short
 from viz.figures import paper
 from viz.labels import end_labels
@@ -120,3 +123,33 @@ def shade(ax: Axes, comparison: Comparison) -> None:
     unit_s = 60.0 if comparison.clock[1] == "min" else 3600.0
     for begin, end in comparison.events:
         ax.axvspan(begin / unit_s, end / unit_s, color=ORANGE, alpha=0.15, lw=0)
+
+
+ACROSS, PANELS = 4, 48  # of a recording in a row; and in all, more cannot be read
+POINTS = 2000  # of a curve: more do not show
+SHORT = 30  # characters of a title
+
+
+@dataclass(frozen=True)
+class Panel:
+    """time (n,) s;  values (n,) as written;  meaning : what the column is taken for, "" if it is left out"""
+
+    name: str
+    time: Array
+    values: Array
+    meaning: str
+    is_temperature: bool
+
+
+@paper.styled
+def columns(panels: Sequence[Panel], title: str, *, png: str | Path | None = None) -> Figure:
+    """Temperatures are blue, inputs orange, what is left out grey; the meaning stands under the name."""
+    visible_panels = panels[:PANELS]
+    figure, axes = paper.panels(len(visible_panels), ACROSS, (3.0, 1.8), title, more=0.5)
+    for ax, panel in zip(axes, visible_panels, strict=False):
+        colour = LIGHT.faint if not panel.meaning else BLUE if panel.is_temperature else ORANGE
+        ax.plot(panel.time, panel.values, color=colour, lw=1.0)
+        ax.set_title(panel.name[:SHORT], fontsize=8.5)
+        ax.set_xlabel(f"{panel.meaning or 'left out'} over time (s)", fontsize=8)
+        ax.margins(x=0)
+    return paper.save(figure, png)

@@ -84,7 +84,8 @@ def staircase(
         _level(ax, floor_K, "sensors' uncertainty")
     if plain_K is not None and plain_K < ax.get_ylim()[1]:
         _level(ax, plain_K, "best plain model", BESIDE)
-    ax.set_xticks([0, *(i + 1 for i in range(len(history)))], ["start", *(_step_name(r) for r in history)])
+    words = [f"{r['number']}\n{textwrap.fill('+ ' * (r['action'] == 'add') + r['words'], 17)}" for r in history]
+    ax.set_xticks(range(len(history) + 1), ["start", *words])
     ax.grid(False, axis="x")
     ax.set(ylabel="rms error (K)", title="Error of every test; strong: never used")
     return paper.save(figure, png)
@@ -105,8 +106,3 @@ def error_paths(history: Sequence[Mapping[str, Any]]) -> dict[tuple[str, str], l
             path = paths.setdefault((test["name"], test["role"]), [test["rmse_K"]["before"]])
             path.append(test["rmse_K"]["after"])
     return paths
-
-
-def _step_name(revision: Mapping[str, Any]) -> str:
-    words = "+ " * (revision["action"] == "add") + revision["words"]
-    return f"{revision['number']}\n{textwrap.fill(words, 17)}"

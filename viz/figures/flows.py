@@ -129,7 +129,9 @@ def sankey_of_losses(heat: Heat, *, title: str = "", png: str | Path | None = No
         raise InputError("no losses to draw", "sankey", "a machine that is running")
     figure, (ax,) = paper.subplots(8.4, 4.4)
     _side(ax, left, 0.0, 0.46, dict.fromkeys(left, VERMILION) | {COOLS: ORANGE}, total)
-    _side(ax, right, 1.0, 0.54, {k: colour_of(k, heat) for k in right}, total)
+    streams = {stream.partition(":")[0] for stream in heat.streams}  # darker than what faces give up
+    shades = {k: BLUE if k in streams else SKY for k in right} | {WARMS: ORANGE, ELSEWHERE: LIGHT.faint}
+    _side(ax, right, 1.0, 0.54, shades, total)
     ax.fill_between([0.46, 0.54], 0, total, color=LIGHT.ink, lw=0)
     ax.text(0.5, total * 1.04, f"{total:.0f} W", ha="center", weight="bold", fontsize=10)
     ax.set(xlim=(-0.32, 1.32), ylim=(-LOW * total, HIGH * total))
@@ -145,12 +147,6 @@ def entries(heat: Heat) -> dict[str, float]:
     return losses | ({COOLS: -heat.stored} if -heat.stored >= least else {})
 
 
-def colour_of(name: str, heat: Heat) -> str:
-    """What a stream carries off is darker than what faces give up."""
-    streams = {stream.partition(":")[0] for stream in heat.streams}
-    return {WARMS: ORANGE, ELSEWHERE: LIGHT.faint}.get(name, BLUE if name in streams else SKY)
-
-
 def _side(ax: Axes, parts: dict[str, float], outer: float, inner: float, colours: dict[str, str], total: float) -> None:
     """Ribbons from a column at `outer`, spread out so that names fit, to the trunk at `inner`."""
     gap = min(GAP, (HIGH + LOW - 1) / max(len(parts) - 1, 1)) * total
@@ -163,14 +159,8 @@ def _side(ax: Axes, parts: dict[str, float], outer: float, inner: float, colours
         y, at = y - watts, at - watts - gap
     heights = spread_labels(middles[::-1], -LOW * total, HIGH * total, 0.075 * total)[::-1]
     for (name, watts), height in zip(parts.items(), heights, strict=True):
-        ax.text(
-            outer + 0.02 * sign,
-            height,
-            fill(f"{name}\u00a0\u00a0{watts:.0f}\u00a0W", LINE),
-            ha="right" if sign < 0 else "left",
-            va="center",
-            fontsize=9,
-        )
+        words, side = fill(f"{name}\u00a0\u00a0{watts:.0f}\u00a0W", LINE), "right" if sign < 0 else "left"
+        ax.text(outer + 0.02 * sign, height, words, ha=side, va="center", fontsize=9)
 
 
 def _ribbon(ax: Axes, a: tuple[float, float], b: tuple[float, float], width: float, colour: str) -> None:

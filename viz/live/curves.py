@@ -30,16 +30,16 @@ def figure(theme: Theme = LIGHT, rows: Sequence[float] = (1.0,), **layout: Any) 
 
     out = make_subplots(len(rows), 1, shared_xaxes=True, row_heights=list(rows), vertical_spacing=0.06)
     grid = {"gridcolor": faded(theme.faint, 0.25), "linecolor": theme.faint, "zeroline": False, "automargin": True}
-    out.update_layout(
-        template=None,
-        paper_bgcolor=theme.paper,
-        plot_bgcolor=theme.paper,
-        hovermode="closest",
-        font={"family": "DejaVu Sans, Arial, sans-serif", "size": 12, "color": theme.ink},
-        margin={"l": 56, "r": 16, "t": 56, "b": 44},
-        legend={"orientation": "h", "y": 1.0, "yanchor": "bottom"},
-        **layout,
-    )
+    look: dict[str, Any] = {
+        "template": None,
+        "paper_bgcolor": theme.paper,
+        "plot_bgcolor": theme.paper,
+        "hovermode": "closest",
+    }
+    look |= {"font": {"family": "DejaVu Sans, Arial, sans-serif", "size": 12, "color": theme.ink}}
+    look |= {"margin": {"l": 56, "r": 16, "t": 56, "b": 44}}
+    look |= {"legend": {"orientation": "h", "y": 1.0, "yanchor": "bottom"}}
+    out.update_layout(**look, **layout)
     out.update_xaxes(**grid)
     out.update_yaxes(**grid)
     return out
@@ -148,9 +148,8 @@ def parity(comparison: Comparison, *, theme: Theme = LIGHT) -> go.Figure:
         y, model = np.asarray(c.y, float), np.asarray(comparison.model[c.name], float)
         pair = np.concatenate([y[np.isfinite(y)], model])
         low, high = min(low, float(pair.min())), max(high, float(pair.max()))
-        out.add_scatter(
-            x=plain(y[::thin]), y=plain(model[::thin]), mode="markers", name=as_text(short(c.name)), marker_size=4
-        )
+        style = {"mode": "markers", "name": as_text(short(c.name)), "marker_size": 4}
+        out.add_scatter(x=plain(y[::thin]), y=plain(model[::thin]), **style)
     out.add_scatter(x=[low, high], y=[low, high], mode="lines", showlegend=False, line={"color": theme.ink, "width": 1})
     out.update_xaxes(title="measured (°C)")
     out.update_yaxes(title="modelled (°C)", scaleanchor="x")
@@ -163,17 +162,9 @@ def confusion(names: Sequence[str], cosine: Array, *, theme: Theme = LIGHT) -> g
     out = figure(theme, title={"text": "Traces in common (1: cannot be told apart)", "x": 0.02, "font": {"size": 13}})
     numbers = [str(i) for i in range(1, len(names) + 1)]
     labels = [f"{'<br>'.join(map(as_text, wrap(name, LABEL)))}  {i}" for name, i in zip(names, numbers, strict=True)]
-    out.add_heatmap(
-        z=[plain(row) for row in c],
-        x=numbers,
-        y=labels,
-        zmin=0,
-        zmax=1,
-        colorscale="Blues",
-        showscale=False,
-        texttemplate="%{z:.2f}",
-        hovertemplate="%{x}<br>%{y}<br>%{z:.3f}<extra></extra>",
-    )
+    style = {"zmin": 0, "zmax": 1, "colorscale": "Blues", "showscale": False, "texttemplate": "%{z:.2f}"}
+    style |= {"hovertemplate": "%{x}<br>%{y}<br>%{z:.3f}<extra></extra>"}
+    out.add_heatmap(z=[plain(row) for row in c], x=numbers, y=labels, **style)
     out.update_yaxes(autorange="reversed", dtick=1)
     out.update_xaxes(type="category", dtick=1, tickangle=0)
     return out

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -104,18 +104,9 @@ class Pulses:
     def _dots(self, name: str, mask: Mask, colours: NDArray[np.uint8], size: float, order: int) -> None:
         self._p.remove_actor(name, reset_camera=False, render=False)  # type: ignore[arg-type]
         if mask.any():
-            actor = self._p.add_points(
-                self._xyz[mask],
-                scalars=colours[mask],
-                rgb=True,
-                point_size=size,
-                lighting=False,
-                render_points_as_spheres=True,
-                name=name,
-                reset_camera=False,
-                render=False,
-            )
-            draw_on_top(actor, order)
+            style: dict[str, Any] = {"point_size": size, "lighting": False, "render_points_as_spheres": True}
+            style |= {"name": name, "reset_camera": False, "render": False}
+            draw_on_top(self._p.add_points(self._xyz[mask], scalars=colours[mask], rgb=True, **style), order)
 
 
 def _gif(path: Path, pictures: list[NDArray[np.uint8]], frames_per_second: float) -> Path:

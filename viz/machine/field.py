@@ -55,9 +55,8 @@ def cutaway(
     note : what the sensors' labels say
     """
     view = view or View()
-    p, surface, marks = cut_open(
-        nodes, sensors, labels, room_for(label_texts(sensors, labels), title), wedge, view, theme
-    )
+    room = room_for(label_texts(sensors, labels), title)
+    p, surface, marks = cut_open(nodes, sensors, labels, room, wedge, view, theme)
     paint_cut(p, surface, marks.cut, on_nodes(nodes, T), limits, theme, colours)
     scene.colour_bar(p, unit, theme)
     scene.headline(p, title, theme)
@@ -78,10 +77,8 @@ def uncertainty(
 
     half95 : (n_nodes,) K;  sensors : where it was measured
     """
-    limits = 0.0, float(np.max(half95))
-    return cutaway(
-        nodes, half95, sensors=sensors, title=title, limits=limits, colours=power(), unit="± K", note=note, png=png
-    )
+    look: dict[str, Any] = {"limits": (0.0, float(np.max(half95))), "colours": power(), "unit": "± K"}
+    return cutaway(nodes, half95, sensors=sensors, title=title, note=note, png=png, **look)
 
 
 def cut_open(
@@ -136,13 +133,9 @@ def pair(
     room = Room(0.13, 0.26, TITLE, NOTE) if any(sensors) else Room(0.02, 0.16, TITLE)
     order = sorted(range(len(sensors[0])), key=lambda k: -max(row[k].weight for row in sensors))  # the same in both
     numbers = [[replace(row[k], name="") for k in order] for row in sensors]
-    for i, (field, T_limits, colours, row, words) in enumerate(
-        [
-            (first, ends, heat(), numbers[0], titles[0]),
-            (last, ends, heat(), numbers[1], titles[1]),
-            (last - first, (-most, most), missing(), (), "the change"),
-        ]
-    ):
+    both = [(T, ends, heat(), row, words) for T, row, words in zip((first, last), numbers, titles, strict=True)]
+    change = (last - first, (-most, most), missing(), (), "the change")
+    for i, (field, T_limits, colours, row, words) in enumerate([*both, change]):
         p.subplot(0, i)
         scene.look(p, frame_points(surface, row), view, room)
         marks = marked(surface, row, LABELS, np.array(p.camera.position))
@@ -200,18 +193,9 @@ def paint(
     data = scene.polydata(surface)
     data.point_data["T"] = surface.values(T)
     scene.outline(p, data if outlined is None else scene.polydata(outlined), theme)
-    p.add_mesh(
-        data,
-        scalars="T",
-        cmap=colours or heat(),
-        clim=rounded(*(limits or (float(T.min()), float(T.max())))),
-        show_scalar_bar=False,
-        ambient=0.8,
-        diffuse=0.28,
-        specular=0.0,
-        interpolate_before_map=True,
-        culling="back",
-    )
+    ends = rounded(*(limits or (float(T.min()), float(T.max()))))
+    look: dict[str, Any] = {"specular": 0.0, "interpolate_before_map": True, **scene.FLAT}
+    p.add_mesh(data, scalars="T", cmap=colours or heat(), clim=ends, **look)
     return data
 
 
@@ -234,16 +218,8 @@ def paint_cut(
     if cut.ghost is not None:
         clear = scene.polydata(cut.ghost)
         clear.point_data["T"] = cut.ghost.values(T)
-        p.add_mesh(
-            clear,
-            scalars="T",
-            cmap=colours or heat(),
-            clim=rounded(*limits),
-            show_scalar_bar=False,
-            opacity=OPACITY,
-            lighting=False,
-            culling="back",
-        )
+        look: dict[str, Any] = {"opacity": OPACITY, "lighting": False, "culling": "back", "show_scalar_bar": False}
+        p.add_mesh(clear, scalars="T", cmap=colours or heat(), clim=rounded(*limits), **look)
         out.append((cut.ghost, clear))
     solid = paint(p, cut.solid, T, limits, theme, outlined=surface, colours=colours)  # last: a colour bar is of this
     out.append((cut.solid, solid))

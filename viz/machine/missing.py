@@ -66,17 +66,7 @@ def missing_in_machine(
     watts = np.array([heat.get(part, np.nan) for part in nodes.parts])
     data.cell_data["W"] = watts[surface.part]
     scene.outline(p, data, theme)
-    p.add_mesh(
-        data,
-        scalars="W",
-        cmap=missing(),
-        clim=rounded(-top, top),
-        nan_color="#E4E8EC",
-        show_scalar_bar=False,
-        ambient=0.8,
-        diffuse=0.28,
-        culling="back",
-    )
+    p.add_mesh(data, scalars="W", cmap=missing(), clim=rounded(-top, top), nan_color="#E4E8EC", **scene.FLAT)
     scene.colour_bar(p, "W", theme)
     unsure = "" if placed({"where": where}) else " (too little evidence to locate it)"
     scene.headline(p, f"Heat that the model misses, mean over {test}{unsure}", theme)

@@ -32,14 +32,7 @@ LABEL = 12, 32  # half height and width of such a label, pixels
 NODE = 25  # radius of a node, pixels
 ASIDE = 20  # pixels from a line to the middle of a label beside it
 SHARES = (0.5, 0.42, 0.58, 0.34, 0.66, 0.26, 0.74)  # of a line: where its label may stand, the middle first
-BELOW: dict[str, Any] = {
-    "vertical": False,
-    "position_x": 0.28,
-    "position_y": 0.05,
-    "width": 0.36,
-    "height": 0.022,
-    "unit": "W",
-}
+BELOW: dict[str, Any] = {"vertical": False, "position_x": 0.28, "position_y": 0.05, "width": 0.36, "height": 0.022}
 
 
 def network_in_machine(
@@ -84,7 +77,7 @@ def network_in_machine(
     names = [Label(tuple(xyz), words[name], LIGHT.ink) for name, xyz in at.items()]  # type: ignore[arg-type]
     scene.colour_bar(p, "°C", theme, mapper=p.actors["nodes"].mapper)
     if "link 0" in p.actors:
-        scene.colour_bar(p, "", theme, mapper=p.actors["link 0"].mapper, **BELOW)
+        scene.colour_bar(p, "", theme, mapper=p.actors["link 0"].mapper, unit="W", **BELOW)
     scene.headline(p, f"{title} widest line {float(f'{widest:.2g}'):g} W/K".strip(), theme)
     callouts(p, names, frame, SIDE, theme, size=LETTERS, dots=False)
     renderer: Any = p.renderer
@@ -146,17 +139,9 @@ def _lines(p: pyvista.Plotter, at: Mapping[str, Array], flow: Heat, colours: Col
         a, b = at[f.start], at[f.end]
         line = pyvista.Line(a, b)
         line.point_data["W"] = np.full(line.n_points, f.watts)
-        actor = p.add_mesh(
-            line,
-            scalars="W",
-            cmap=colours,
-            clim=rounded(0.0, most),
-            lighting=False,
-            show_scalar_bar=False,
-            name=f"link {i}",
-            line_width=max(2.0, 24 * np.sqrt(f.conductance / widest)),
-        )
-        draw_on_top(actor, 1)
+        style: dict[str, Any] = {"lighting": False, "show_scalar_bar": False, "name": f"link {i}"}
+        style |= {"line_width": max(2.0, 24 * np.sqrt(f.conductance / widest))}
+        draw_on_top(p.add_mesh(line, scalars="W", cmap=colours, clim=rounded(0.0, most), **style), 1)
         place = clear_place(a, b, list(at.values()), labels, pixel_m) if len(labels) < LABELLED else None
         if place is not None:
             p.add_actor(text(f"{f.watts:.0f} W", place, "#6B2A12", 0, 11), reset_camera=False)

@@ -142,14 +142,6 @@ def predicted(plan: PredictedCurves, *, sensors: int = SENSORS, png: str | Path 
         ends = [float(curves[channel.name][-1]) for curves in plan.curves.values()][: len(COLOURS)]
         end_labels(ax, ends, [f"{end:.1f}" for end in ends], COLOURS)
     names = list(plan.curves)[: len(COLOURS)]
-    figure.legend(
-        axes[0].get_lines()[: len(names)],
-        names,
-        loc="outside upper left",
-        ncols=2,
-        frameon=False,
-        labelcolor="linecolor",
-        handlelength=1.2,
-        fontsize=8.5,
-    )
+    style: dict[str, Any] = {"loc": "outside upper left", "ncols": 2, "frameon": False, "labelcolor": "linecolor"}
+    figure.legend(axes[0].get_lines()[: len(names)], names, handlelength=1.2, fontsize=8.5, **style)
     return paper.save(figure, png)

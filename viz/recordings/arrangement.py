@@ -31,7 +31,8 @@ def blueprint(comparison: Comparison, first: str, points: Array, with_history: b
     below: list[Any] = [_over_time("inputs", shares, end)] if comparison.test.inputs else []
     below += [rrb.TextLogView(origin="events", name="events")] if comparison.events else []
     right = rrb.Vertical(curves, _over_time("residual", "measured − model (K)", end), *below)
-    views = rrb.Horizontal(_machine(comparison, points), _bar(), column_shares=[6, 1])
+    scale = rrb.Spatial2DView(origin="scale", name="°C", background=[255, 255, 255])
+    views = rrb.Horizontal(_machine(comparison, points), scale, column_shares=[6, 1])
     left = rrb.Vertical(views, _text("legend", "legend"), row_shares=[5, 1])
     layout: Any = rrb.Horizontal(left, right, column_shares=[3, 2], name="test")
     if with_history:
@@ -78,20 +79,11 @@ def outside_outline(places: Array, machine: Array) -> Array:
     return np.asarray(places + (far * distance)[:, None] * (away @ np.stack([right, up])))
 
 
-def _bar() -> rrb.Spatial2DView:
-    return rrb.Spatial2DView(origin="scale", name="°C", background=[255, 255, 255])
-
-
 def _machine(comparison: Comparison, points: Array) -> rrb.Spatial3DView:
     middle = (points.min(axis=0) + points.max(axis=0)) / 2
     first = rrb.EyeControls3D(position=eye(points), look_target=middle, eye_up=View().up)
-    return rrb.Spatial3DView(
-        origin="machine",
-        name=f"{comparison.test.name}: temperature",
-        background=[255, 255, 255],
-        line_grid=False,
-        eye_controls=first,
-    )
+    name, white = f"{comparison.test.name}: temperature", [255, 255, 255]
+    return rrb.Spatial3DView(origin="machine", name=name, background=white, line_grid=False, eye_controls=first)
 
 
 def _text(origin: str, name: str) -> rrb.TextDocumentView:

@@ -11,13 +11,14 @@ from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from itertools import cycle
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 import rerun as rr
 
 from geom.arrays import Array
 from geom.errors import InputError
+from measured.case import Channel
 from viz.colours import BLUE, GREEN, LIGHT, ORANGE, PURPLE, SKY, VERMILION, decimals, heat, marks, rounded
 from viz.data import Comparison, Curve, Sensor, short
 from viz.figures.errors import PALE, error_paths
@@ -27,9 +28,6 @@ from viz.rendering import scene
 from viz.rendering.cut import QUARTER, Surface, Wedge, cut_away
 from viz.rendering.ghost import covered, obstacle
 from viz.rendering.nodes import SplitMesh, on_nodes
-
-if TYPE_CHECKING:
-    from measured.case import Channel
 
 MARKED, MARK = re.compile(r"([^\w\s])"), r"\\\1"  # signs that Markdown could read, each taken as it is
 TIME, REVISION = "test_time", "revision"
@@ -122,12 +120,9 @@ def _sensors(
     channels = [channel for channel in c.channels if channel.name in positions]
     if not channels:
         return
-    dots = rr.Points3D(
-        [positions[channel.name] for channel in channels],
-        labels=[short(channel.name) for channel in channels],
-        radii=rr.Radius.ui_points(5.0),
-        show_labels=False,
-    )
+    names = [channel.name for channel in channels]
+    points, labels = [positions[name] for name in names], [short(name) for name in names]
+    dots = rr.Points3D(points, labels=labels, radii=rr.Radius.ui_points(5.0), show_labels=False)
     stream.log("machine/sensors", dots, static=True)
     _names(stream, sorted(channels, key=lambda channel: -c.rmse(channel) / c.limit_K(channel)), positions, surface)
     residual = np.stack([np.interp(times, c.test.time, c.residual(channel)) for channel in channels], axis=1)
@@ -145,14 +140,9 @@ def _names(
     hidden = covered(obstacle(surface), places, eye(surface.points))
     at = np.where(hidden[:, None], outside_outline(places, surface.points), places)
     visible = np.flatnonzero(non_overlapping(at, surface.points))[:LABELS]
-    labels = rr.Points3D(
-        at[visible],
-        labels=[short(channels[i].name) for i in visible],
-        radii=rr.Radius.ui_points(0.0),
-        show_labels=True,
-        colors=[255, 255, 255],
-    )
-    stream.log("machine/names", labels, static=True)
+    style: dict[str, Any] = {"radii": rr.Radius.ui_points(0.0), "show_labels": True, "colors": [255, 255, 255]}
+    names = rr.Points3D(at[visible], labels=[short(channels[i].name) for i in visible], **style)
+    stream.log("machine/names", names, static=True)
     stubs = [np.stack([places[i], at[i]]) for i in visible if hidden[i]]
     lines = rr.LineStrips3D(stubs, colors=rgba(LIGHT.ink), radii=rr.Radius.ui_points(0.8))
     stream.log("machine/stubs", lines, static=True)
@@ -223,14 +213,8 @@ def colour_bar(stream: rr.RecordingStream, low: float, high: float) -> None:
     at = marks(low, high)
     height = [HIGH * (1 - (m - low) / (high - low)) for m in at]
     words = [f"{m:.{decimals(low, high)}f} °C" for m in at]
-    points = rr.Points2D(
-        [[WIDE + GAP, h] for h in height],
-        labels=words,
-        show_labels=True,
-        radii=rr.Radius.ui_points(0.0),
-        colors=[31, 41, 51],
-    )
-    stream.log("scale/marks", points, static=True)
+    style: dict[str, Any] = {"radii": rr.Radius.ui_points(0.0), "show_labels": True, "colors": [31, 41, 51]}
+    stream.log("scale/marks", rr.Points2D([[WIDE + GAP, h] for h in height], labels=words, **style), static=True)
 
 
 def inputs(stream: rr.RecordingStream, comparison: Comparison, timeline: str) -> None:

@@ -45,6 +45,8 @@ def callouts(
 
     The camera must stand.  points : (n, 3) m that the labels stand beside;  dots : draw the markers too
     """
+    import pyvista
+
     towards, right, up = view.axes()
     across, above = points @ right, points @ up
     front = (points @ towards).max()
@@ -59,7 +61,10 @@ def callouts(
         heights = spread_labels(places, above.min() - more, above.max() + more, step)
         edge = middle + side * (0.5 + 0.03) * np.ptp(across)
         for q, height in zip(mine, heights, strict=True):
-            _callout(p, q, edge * right + height * up + front * towards, side, theme, size)
+            end = edge * right + height * up + front * towards
+            line = p.add_mesh(pyvista.Line(q.xyz, end), color=theme.ink, line_width=2.0, opacity=0.8, lighting=False)
+            draw_on_top(line, 1)
+            p.add_actor(text(q.text, end, q.colour, side, size), reset_camera=False, pickable=False)
             if dots:
                 dot(p, q)
 
@@ -80,14 +85,6 @@ def dot(p: pyvista.Plotter, label: Label, size: float = 1.0) -> None:
     draw_on_top(p.add_mesh(here.copy(), color=label.colour, point_size=19 * size, **flat), 3)
     if label.covered:
         draw_on_top(p.add_mesh(here.copy(), color="white", point_size=HOLLOW * 19 * size, **flat), 4)
-
-
-def _callout(p: pyvista.Plotter, label: Label, end: Array, side: int, theme: Theme, size: int) -> None:
-    import pyvista
-
-    line = p.add_mesh(pyvista.Line(label.xyz, end), color=theme.ink, line_width=2.0, opacity=0.8, lighting=False)
-    draw_on_top(line, 1)
-    p.add_actor(text(label.text, end, label.colour, side, size), reset_camera=False, pickable=False)
 
 
 def width(text: str, size: int) -> float:

@@ -5,7 +5,7 @@ So the geometry is cut once, and each new temperature field costs one sparse pro
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
@@ -141,7 +141,9 @@ def section(nodes: SplitMesh, normal: Array, offset: float = 0.0) -> Surface:
     triangles += [np.stack([ac, ae, be], axis=1), np.stack([ac, be, bc], axis=1)]
     part += [nodes.region[two]] * 2
     flat = Surface(nodes, combined.matrix(), np.concatenate(triangles), np.concatenate(part)).compact()
-    return _facing(flat, normal)
+    a, b, c = flat.points[flat.triangles].transpose(1, 0, 2)
+    away = np.cross(b - a, c - a) @ normal < 0  # all are turned towards the normal
+    return replace(flat, triangles=np.where(away[:, None], flat.triangles[:, ::-1], flat.triangles))
 
 
 def cut_away(nodes: SplitMesh, wedge: Wedge | None = QUARTER) -> Surface:
@@ -189,13 +191,6 @@ class _Combinations:
             (np.concatenate([1 - share, share]), (np.concatenate([rows, rows]), np.concatenate([i, j]))),
             shape=(n, len(self.distance)),
         )
-
-
-def _facing(flat: Surface, normal: Array) -> Surface:
-    """The same triangles, all turned towards `normal`."""
-    a, b, c = flat.points[flat.triangles].transpose(1, 0, 2)
-    triangles = np.where((np.cross(b - a, c - a) @ normal < 0)[:, None], flat.triangles[:, ::-1], flat.triangles)
-    return Surface(flat.nodes, flat.weights, triangles, flat.part)
 
 
 def _first(cells: Ints, flag: Mask, count: int) -> Ints:

@@ -9,10 +9,9 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.ndimage import distance_transform_edt
 
-from geom.arrays import Array, Ints, Mask
+from geom.arrays import Array, Mask
 from viz.rendering import scene
 from viz.rendering.cut import Surface, joined, section
 from viz.rendering.scene import Room, View
@@ -32,7 +31,8 @@ def anchors(surface: Surface, view: View, room: Room, points: Array | None = Non
     p = pyvista.Plotter(off_screen=True, window_size=list(SIZE), lighting="none")
     p.set_background("black")  # type: ignore[arg-type]
     data = scene.polydata(surface)
-    data.cell_data["number"] = _as_colour(surface.part + 1)
+    high, low = np.divmod(surface.part + 1, 16)
+    data.cell_data["number"] = np.stack([low * 16, high * 16, np.zeros_like(low)], axis=1).astype(np.uint8)
     p.add_mesh(data, scalars="number", rgb=True, lighting=False)
     scene.look(p, surface.points if points is None else points, view, room)
     coarse = np.round(np.asarray(p.screenshot(return_img=True))[..., :2] / 16.0).astype(np.int64)
@@ -85,10 +85,6 @@ def distance(obstacle: Any, points: Array) -> Array:
         return float(np.sqrt(float(squared)))
 
     return np.array([nearest(at) for at in points], float)
-
-
-def _as_colour(number: Ints) -> NDArray[np.uint8]:
-    return np.stack([number % 16 * 16, number // 16 * 16, np.zeros_like(number)], axis=1).astype(np.uint8)
 
 
 SIDES = 20  # of a window: round to the eye

@@ -36,14 +36,8 @@ def require_gl() -> None:
 def _draws(window: str) -> bool:
     environment = {**os.environ, "VTK_DEFAULT_OPENGL_WINDOW": window}
     try:
-        process = subprocess.run(
-            [sys.executable, "-P", "-c", _DRAW],
-            env=environment,
-            capture_output=True,
-            text=True,
-            timeout=60,
-            check=False,
-        )
+        command = [sys.executable, "-P", "-c", _DRAW]
+        process = subprocess.run(command, env=environment, capture_output=True, text=True, timeout=60, check=False)
     except (OSError, subprocess.TimeoutExpired):
         return False
     return process.returncode == 0 and window in process.stdout

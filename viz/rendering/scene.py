@@ -52,6 +52,7 @@ class Room:
 
 
 NO_ROOM = Room()
+FLAT: dict[str, Any] = {"ambient": 0.8, "diffuse": 0.28, "culling": "back", "show_scalar_bar": False}  # shading of maps
 TITLE, NOTE = 0.07, 0.05  # shares of the height that a headline and a footnote take
 BAR = 0.1  # share of the width that a colour bar takes
 

@@ -107,12 +107,15 @@ def machine_document(
     conductivity : part -> across and along the axis (W/m/K), for heat flux;  looks : of `packed_looks`
     """
     order, colours = np.argsort(nodes.region, kind="stable"), part_colours(nodes.parts, nodes.identities)
+    # Bits: 1, 2, 4, 8 for faces that bound their part, 16, 32, 64, 128 where another part lies on them
+    faces = np.asarray(nodes.outer() @ [1, 2, 4, 8] + nodes.touching() @ [16, 32, 64, 128])
+    sizes = np.bincount(nodes.owner, minlength=len(nodes.parts)).tolist()  # parts follow one another
     return {
         "title": title,
         "points": packed_numbers(nodes.points),
         "tets": packed_integers(nodes.tets[order]),
-        "faces": packed_integers(_faces(nodes)[order, None]),
-        "parts": _parts(nodes, colours),
+        "faces": packed_integers(faces[order, None]),
+        "parts": [{"name": p, "colour": colours[p], "nodes": n} for p, n in zip(nodes.parts, sizes, strict=True)],
         "looks": looks,
         "k": conductivity and [conductivity[name] for name in nodes.parts],
         "heat": _palette(heat()),
@@ -161,13 +164,11 @@ def temperature_document(
 
 def with_limits(content: Mapping[str, Any], limits: Mapping[str, Mapping[str, float]]) -> dict[str, Any]:
     """The same with the largest errors that count as agreement (K): test -> channel -> limit."""
-    return {
-        **content,
-        "tests": [
-            {**test, "sensors": [{**s, "limit": limits[test["test"]].get(s["channel"])} for s in test["sensors"]]}
-            for test in content["tests"]
-        ],
-    }
+    tests = []
+    for test in content["tests"]:
+        of = limits[test["test"]]
+        tests.append({**test, "sensors": [{**s, "limit": of.get(s["channel"])} for s in test["sensors"]]})
+    return {**content, "tests": tests}
 
 
 def render(content: Mapping[str, Any]) -> str:
@@ -201,17 +202,6 @@ def _flux(nodes: SplitMesh, tests: Sequence[Recorded], conductivity: Mapping[str
     """Round marks for the heat flux (kW/m2) of every test's end, the densest twentieth of the nodes left out."""
     ends = [nodal_flux(nodes, t.fields[-1], conductivity) for t in tests]
     return marks(*rounded(0.0, max(float(np.quantile(q, 0.95)) for q in ends)))
-
-
-def _parts(nodes: SplitMesh, colours: Mapping[str, str]) -> list[dict[str, Any]]:
-    """Parts in the order of their nodes, which follow one another."""
-    sizes = np.bincount(nodes.owner, minlength=len(nodes.parts)).tolist()
-    return [{"name": name, "colour": colours[name], "nodes": n} for name, n in zip(nodes.parts, sizes, strict=True)]
-
-
-def _faces(nodes: SplitMesh) -> Ints:
-    """(n_tets,) bits: 1, 2, 4, 8 for faces that bound their part, 16, 32, 64, 128 where another part lies on them."""
-    return np.asarray(nodes.outer() @ [1, 2, 4, 8] + nodes.touching() @ [16, 32, 64, 128])
 
 
 def _sensors(test: Recorded, positions: Mapping[str, Sequence[float]]) -> dict[str, Any]:

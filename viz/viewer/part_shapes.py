@@ -134,11 +134,6 @@ class NetworkRun:
     conductance: Mapping[tuple[str, str], float]
 
 
-def _side_by_side(columns: Sequence[Array], rows: int) -> Array:
-    """(rows, k), also where there are no columns."""
-    return np.reshape(columns, (len(columns), rows)).T
-
-
 def network_document(mesh: NamedMesh, nodes: SplitMesh, runs: Sequence[NetworkRun]) -> dict[str, Any]:
     """Nodes with their place along the axis and off it (m); flows of 1 % of the largest and more, with their widths."""
     at = {name: xyz for name, xyz in places(mesh, nodes).items() if all(name in r.T for r in runs)}
@@ -162,7 +157,9 @@ def network_document(mesh: NamedMesh, nodes: SplitMesh, runs: Sequence[NetworkRu
         "tests": [
             {
                 "T": packed_numbers(np.transpose([r.T[name] for name in names]), STEP_K),
-                "W": packed_numbers(_side_by_side([r.watts[pair] for pair in active], len(r.T[names[0]])), STEP_W),
+                "W": packed_numbers(
+                    np.reshape([r.watts[p] for p in active], (len(active), r.T[names[0]].size)).T, STEP_W
+                ),
             }
             for r in runs
         ],

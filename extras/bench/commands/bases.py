@@ -14,12 +14,8 @@ def bases(case: th.CaseArgument, json: th.JsonOption = None) -> int:
         folder = th.open_case(case, tell)
         hypotheses = th.which_base(folder.case, progress=tell)
     wrong = [h.test for h in hypotheses if h.declared and h.excluded]
-    document = {
-        "case": folder.case.name,
-        "revision": folder.case.model.revision,
-        "wrong": wrong,
-        "hypotheses": [h.document() for h in hypotheses],
-    }
+    rows, model = [h.document() for h in hypotheses], folder.case.model
+    document = {"case": folder.case.name, "revision": model.revision, "wrong": wrong, "hypotheses": rows}
     th.give(document, json, lambda: bases_summary(document))
     return 1 if wrong else 0
 

@@ -9,6 +9,7 @@ from typing import Annotated, Any
 
 import typer
 
+from extras.bench.measuring.curves import curves as found_in
 from extras.bench.measuring.drift import drift
 from thermoscope import InputError, plugin as th
 
@@ -25,8 +26,6 @@ def curves(
 
     Exit code 1 if the rule fails, equal tests differ, or the later test is not equal to the earlier one.
     """
-    from extras.bench.measuring.curves import curves as found_in
-
     if against is not None:
         return show_drift(case, test, against, out, json)
     if test or out:
@@ -49,7 +48,9 @@ def curves_summary(document: Mapping[str, Any]) -> th.Summary:
     title = "Within 3 to 4 % of the measured temperature, never above 7 %"
     rule = th.Table.of(title, assemblies, columns, ["beyond 7 %"])
     sentence = f"{fine} of {len(assemblies)} assemblies are within the 3 to 4 % rule."
-    parts: list[th.Table | str] = [rule, _repeats(document), _warming(document), *_doubts(document)]
+    columns = "place | *equal tests=tests | *mean rise (K)=mean | 1 sigma (K)=sd_mean | largest difference=spread"
+    equal = th.Table.of("Equal tests pooled", document["repeats"], f"{columns} | 95 % limit=limit | *repeat", ["no"])
+    parts: list[th.Table | str] = [rule, equal, _warming(document), *_doubts(document)]
     return th.Summary(sentence, parts, "--json FILE has all numbers")
 
 
@@ -58,11 +59,6 @@ def _warming(document: Mapping[str, Any]) -> th.Table:
     rows = [[c["channel"], t["name"], *_row(c)] for t in document["tests"] for c in t["curves"]]
     keep = ["test", "tau_95 (min)", "steady", "rms (K)"]
     return th.Table("Warming: T = a exp(b exp(c t)), 95 % intervals; steady by eq. 9", headers, rows, ["no"], keep)
-
-
-def _repeats(document: Mapping[str, Any]) -> th.Table:
-    columns = "place | *equal tests=tests | *mean rise (K)=mean | 1 sigma (K)=sd_mean | largest difference=spread"
-    return th.Table.of("Equal tests pooled", document["repeats"], f"{columns} | 95 % limit=limit | *repeat", ["no"])
 
 
 def _doubts(document: Mapping[str, Any]) -> list[str]:
@@ -78,17 +74,12 @@ def _row(c: Mapping[str, Any]) -> list[Any]:
     e, q = c["eq8"], c["equilibrium"]
     fit: list[Any] = ["-"] * 6
     if e is not None:
-        sizes = (_with(e[key], e["ci95"][name]) for key, name in (("a_degC", "a"), ("b", "b"), ("c_1_min", "c")))
+        values = ((e[key], *e["ci95"][name]) for key, name in (("a_degC", "a"), ("b", "b"), ("c_1_min", "c")))
+        sizes = (f"{value} ({low} ... {high})" for value, low, high in (map(th.cell, row) for row in values))
         fit = [*sizes, e["rmse_K"], e["start_degC"], e["tau95_min"]]
-    return [*fit, *(["-", "-"] if q is None else [_since(q), q["drift_K_h"]])]
-
-
-def _with(value: float, ci: list[float]) -> str:
-    return f"{th.cell(value)} ({th.cell(ci[0])} ... {th.cell(ci[1])})"
-
-
-def _since(q: Mapping[str, Any]) -> str:
-    return f"since {q['from_min']:.0f} min" if q["reached"] else "no"
+    if q is None:
+        return [*fit, "-", "-"]
+    return [*fit, f"since {q['from_min']:.0f} min" if q["reached"] else "no", q["drift_K_h"]]
 
 
 def show_drift(case: str, test: str | None, against: str, out: Path | None, json: str | None) -> int:
@@ -131,13 +122,8 @@ def _named(case: th.MeasuredCase, name: str | None, option: str = "--test") -> t
 def drift_summary(document: Mapping[str, Any]) -> th.Summary:
     """What changed; then both quantities of every sensor."""
     columns = "sensor=place | *quantity | before | after | *difference (%)=percent | *+- 95 %=U95_percent"
-    table = th.Table.of(
-        "At the earlier test's conditions",
-        document["changes"],
-        f"{columns} | uncertainties | channel | *verdict",
-        ["changed"],
-    )
+    columns += " | uncertainties | channel | *verdict"
+    table = th.Table.of("At the earlier test's conditions", document["changes"], columns, ["changed"])
     names = ", ".join(document["left_out"])
-    return th.Summary(
-        document["sentence"], [table, *([f"too few readings, or no rise: {names}"] if names else [])], "--out DIR"
-    )
+    rest = [f"too few readings, or no rise: {names}"] if names else []
+    return th.Summary(document["sentence"], [table, *rest], "--out DIR")

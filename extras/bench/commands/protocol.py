@@ -42,16 +42,11 @@ def protocol_summary(result: Protocol) -> th.Summary:
     ways = "way=method | at (s)=at_s | degC=value | 1 sigma (K)=sd | how=words"
     off = th.Table.of("Winding when switched off", result.ways, ways)
     steps = th.Table.of("Thermal test", result.steps, "step=name | *state | *when | *what | found=words", ["refused"])
-    return th.Summary(_in_short(result), [rises, off, steps], "--json FILE; docs/how-to/thermal-test.md")
-
-
-def _in_short(result: Protocol) -> str:
+    words = ", ".join(f"{n} {s.value:.1f} K" for n, s in spreads)
+    sentence = f"Rises: {words}." if words else f"A thermal test has {len(result.steps)} steps."
     if result.refused:
-        return f"{len(result.refused)} steps are refused: no temperature is given."
-    rises = [
-        f"{n} {s.value:.1f} K" for n, s in (("winding", result.winding), ("magnets", result.magnets)) if s is not None
-    ]
-    return f"Rises: {', '.join(rises)}." if rises else f"A thermal test has {len(result.steps)} steps."
+        sentence = f"{len(result.refused)} steps are refused: no temperature is given."
+    return th.Summary(sentence, [rises, off, steps], "--json FILE; docs/how-to/thermal-test.md")
 
 
 def _row(name: str, s: th.PropagatedUncertainty) -> list[Any]:

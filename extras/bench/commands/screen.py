@@ -69,11 +69,8 @@ def carry(
     with th.progress() as tell:
         calibrated = th.open_case(source, tell)
         transfers = [transferred(calibrated.case, th.open_case(name, tell).case) for name in targets]
-    document = {
-        "source": calibrated.case.name,
-        "revision": calibrated.case.model.revision,
-        "targets": [one.document() for one in transfers],
-    }
+    of, rows = calibrated.case, [one.document() for one in transfers]
+    document = {"source": of.name, "revision": of.model.revision, "targets": rows}
     th.give(document, json, lambda: show_transfer(document))
     return 0 if all(one.agrees for one in transfers) else 1
 

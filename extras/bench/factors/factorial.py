@@ -81,18 +81,14 @@ def fractional(factors: Sequence[Factor], generators: Mapping[str, str]) -> Desi
     base = full(free)
     columns = {f.letter: base.column(f.letter) for f in free} | {g: base.column(w) for g, w in generators.items()}
     signs = np.column_stack([columns[f.letter] for f in factors])
-    return Design(tuple(factors), signs, _defining([_times(g, w) for g, w in generators.items()]))
+    words = [_times(g, w) for g, w in generators.items()]
+    subsets = (subset for n in range(1, len(words) + 1) for subset in combinations(words, n))
+    return Design(tuple(factors), signs, tuple(reduce(_times, subset) for subset in subsets))
 
 
 def _times(a: str, b: str) -> str:
     """Product of two words: letters that occur twice cancel."""
     return "".join(sorted(set(a) ^ set(b)))
-
-
-def _defining(words: Sequence[str]) -> tuple[str, ...]:
-    """All products of the generators' words."""
-    subsets = (subset for n in range(1, len(words) + 1) for subset in combinations(words, n))
-    return tuple(reduce(_times, subset) for subset in subsets)
 
 
 @dataclass(frozen=True)
@@ -118,13 +114,8 @@ class Effects:
 
     def document(self) -> dict[str, Any]:
         rows = [{"effect": e, "words": self.words(e), "value": v, "active": e in self.active} for e, v in self.ranked]
-        return {
-            "response": self.response,
-            "PSE": self.PSE,
-            "margin": self.margin,
-            "simultaneous": self.simultaneous,
-            "effects": rows,
-        }
+        limits = {"PSE": self.PSE, "margin": self.margin, "simultaneous": self.simultaneous}
+        return {"response": self.response, **limits, "effects": rows}
 
     def words(self, letters: str) -> str:
         return " x ".join(self.names[c] for c in letters)
@@ -181,14 +172,9 @@ class Ranking:
         return sorted(self.measure, key=lambda n: -self.measure[n])
 
     def document(self) -> dict[str, Any]:
-        return {
-            "method": self.method,
-            "runs": self.runs,
-            "ranking": [
-                {"factor": n, "measure": self.measure[n], "conf95": self.conf[n], "spread": self.spread[n]}
-                for n in self.ranked
-            ],
-        }
+        columns = {"measure": self.measure, "conf95": self.conf, "spread": self.spread}
+        ranking = [{"factor": n, **{key: of[n] for key, of in columns.items()}} for n in self.ranked]
+        return {"method": self.method, "runs": self.runs, "ranking": ranking}
 
 
 def morris(factors: Sequence[Varied], response: Response, trajectories: int = 10, seed: int = 0) -> Ranking:

@@ -89,12 +89,9 @@ class Screening:
     effects: Mapping[str, Effects]
 
     def document(self) -> dict[str, Any]:
-        return {
-            "runs": len(self.rises),
-            "resolution": self.design.resolution,
-            "responses": list(RESPONSES),
-            "effects": {name: e.document() for name, e in self.effects.items()},
-        }
+        effects = {name: e.document() for name, e in self.effects.items()}
+        head = {"runs": len(self.rises), "resolution": self.design.resolution, "responses": list(RESPONSES)}
+        return {**head, "effects": effects}
 
 
 def screen(machine: th.MachineDescription, design: Design, load: Load | None = None) -> Screening:

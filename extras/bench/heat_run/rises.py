@@ -94,16 +94,14 @@ def _rise_of(way: th.Extrapolated, cold: Cold, coolant: float, meter: th.Meter, 
     def result(R1: Any, R2: Any, t1: Any, ta: Any, back: Any) -> Any:
         return resistance_rise(R1, R2, t1, ta, k) + back
 
-    total = th.propagate(
-        result,
-        (
-            meter.reading("cold resistance", cold.ohm),
-            meter.reading("hot resistance", ohm),
-            th.Reading("cold temperature", cold.machine_C, thermometer_K),
-            th.Reading("coolant", coolant, thermometer_K),
-            th.Reading("way back to switching off", 0.0, max(way.sd, LEAST_K), "normal"),
-        ),
+    readings = (
+        meter.reading("cold resistance", cold.ohm),
+        meter.reading("hot resistance", ohm),
+        th.Reading("cold temperature", cold.machine_C, thermometer_K),
+        th.Reading("coolant", coolant, thermometer_K),
+        th.Reading("way back to switching off", 0.0, max(way.sd, LEAST_K), "normal"),
     )
+    total = th.propagate(result, readings)
     method = f"{RESISTANCE}, {way.method}"
     return Rise(method, way.at_s, way.value, total.value, _expanded(total), None, way.words)
 

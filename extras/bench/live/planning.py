@@ -29,9 +29,8 @@ LENGTHS_MIN = (3.0, 10.0, 30.0)  # of a set point, before all is thought over ag
 STEP_S = 30.0  # of a planned record: sensors and windings take as long to follow
 PAST, CHECKED = 40, 3  # blocks of what was read; set points that are looked at again
 RIVALS = 8  # hypotheses that are told apart
-UNRESOLVED = (
-    0.8  # of a usual amplitude: while its deviation is above that, a cause keeps its odds to some five per cent
-)
+# Of a usual amplitude: while its deviation is above that, a cause keeps its odds to some five per cent
+UNRESOLVED = 0.8
 CHANGE_MIN = 1.0  # until a set point that was asked for is there
 BAND = 2.5  # standard deviations of the upper band
 LIMIT = "limit: "
@@ -171,13 +170,9 @@ def _plans(
     """Of a set point, as long as the limits allow it."""
     e, begin = assessment.posterior.evidence, float(assessment.test.time[-1])
     test = planned(assessment.test, bench, set_point)
+    limited, parameters = _with_limits(test, bench, assessment), (*e.fit.unknowns.parameters, *e.parameters)
     try:
-        parts = th.segments(
-            e.network,
-            [_with_limits(test, bench, assessment)],
-            e.fit.values,
-            (*e.fit.unknowns.parameters, *e.parameters),
-        )
+        parts = th.segments(e.network, [limited], e.fit.values, parameters)
     except th.NoSolution:  # the model runs away there
         return
     read = [s for s in parts if not s.channel.startswith(LIMIT)]
@@ -210,6 +205,7 @@ def planned(test: th.Test, bench: Bench, set_point: SetPoint) -> th.Test:
         return np.concatenate([u, np.full(n, u[-1] if value is None else value)])
 
     before = np.unique(np.linspace(0, m, PAST, endpoint=False).astype(int))
+    block = np.floor(8.0 * np.log2(1.0 + future / 240.0))  # they grow as what is looked for gets slower
     return replace(
         test,
         time=np.concatenate([test.time, test.time[-1] + future]),
@@ -217,13 +213,8 @@ def planned(test: th.Test, bench: Bench, set_point: SetPoint) -> th.Test:
         boundaries={k: on(u) for k, u in test.boundaries.items()},
         channels=tuple(replace(c, y=np.zeros(m + n)) for c in test.channels if np.isfinite(c.y[-20:]).any()),
         recorded=None,
-        blocks=np.concatenate([before, m + np.flatnonzero(np.diff(_block(future), prepend=-1))]),
+        blocks=np.concatenate([before, m + np.flatnonzero(np.diff(block, prepend=-1))]),
     )
-
-
-def _block(future: th.Array) -> th.Array:
-    """Which block a planned instant is in: they grow as what is looked for gets slower."""
-    return np.floor(8.0 * np.log2(1.0 + future / 240.0))
 
 
 def _innovations(e: th.Evidence, s: th.Segment, begin: float, error: th.ModelError | None) -> tuple[th.Array, th.Array]:

@@ -55,9 +55,8 @@ class Session:
                 self._safe()
                 self.steering.store.note({"event": "fault", "what": str(fault)})
                 if isinstance(fault, OSError):
-                    raise BenchError(
-                        f"is gone: {fault}", self.source.where, "a line that lasts; the rows so far are kept"
-                    ) from None
+                    right = "a line that lasts; the rows so far are kept"
+                    raise BenchError(f"is gone: {fault}", self.source.where, right) from None
                 raise
 
     def _safe(self) -> None:
@@ -75,9 +74,8 @@ class Session:
                 if time.monotonic() - heard > self.bench.silence_s and self.source.send is None:
                     over = True  # a file that grows no more
                 elif time.monotonic() - heard > self.bench.silence_s:
-                    raise BenchError(
-                        f"no row for {self.bench.silence_s:g} s", self.source.where, "a bench that goes on"
-                    ) from None
+                    what = f"no row for {self.bench.silence_s:g} s"
+                    raise BenchError(what, self.source.where, "a bench that goes on") from None
                 line = ""
             over = over or line is None
             if line and (row := self.parser.row(line)) is not None:
@@ -92,7 +90,9 @@ class Session:
                 self.tell(words(thought))
                 sent = self.steering.apply(thought)
                 if not self.drive and thought.choice and not thought.stop:
-                    self.tell(f"set {_set_words(self.steering)}, then type done")
+                    rate = {k.name: k.rate_per_s for k in self.steering.bench.knobs}
+                    goal = (f"{n} = {v:g} (at most {rate[n]:g} per s)" for n, v in self.steering.now.items())
+                    self.tell(f"set {', '.join(goal)}, then type done")
                 self._out(sent)
                 if thought.stop:
                     return thought.stop
@@ -106,11 +106,6 @@ class Session:
         for set_point in sent:
             if self.drive:
                 self.source.set(set_point)
-
-
-def _set_words(steering: Steering) -> str:
-    rate = {k.name: k.rate_per_s for k in steering.bench.knobs}
-    return ", ".join(f"{n} = {v:g} (at most {rate[n]:g} per s)" for n, v in steering.now.items())
 
 
 def words(thought: Thought) -> str:

@@ -15,6 +15,7 @@ import threading
 import time
 from collections.abc import Callable, Iterator, Mapping
 from concurrent.futures import CancelledError
+from functools import partial
 from pathlib import Path
 from typing import IO, Any
 from urllib.parse import urlsplit
@@ -67,7 +68,7 @@ def source_of(follow: str) -> Source:
         return _mqtt(follow, address.hostname or "", address.port or 1883, address.path.strip("/") or TOPIC)
     source = Source(follow)
     if follow == "-":
-        source.send = _printed
+        source.send = partial(print, flush=True)
         source.start(lambda: iter(sys.stdin.readline, ""))
         return source
     file = Path(follow)
@@ -75,10 +76,6 @@ def source_of(follow: str) -> Source:
         raise InputError("no such file", follow, "a recording, - for a pipe, tcp://HOST:PORT, or mqtt://HOST")
     source.start(lambda: _growing(file))
     return source
-
-
-def _printed(line: str) -> None:
-    print(line, flush=True)
 
 
 def _growing(file: Path) -> Iterator[str]:
@@ -165,17 +162,13 @@ class Parser:
             self.header = cells
             return None
         if len(cells) != len(self.header):
-            raise BenchError(
-                f"{len(cells)} cells",
-                f"{self.where} line {self.count}",
-                f"{len(self.header)}: {', '.join(self.header)}",
-            )
+            right = f"{len(self.header)}: {', '.join(self.header)}"
+            raise BenchError(f"{len(cells)} cells", f"{self.where} line {self.count}", right)
         return {n: math.nan if v is None else v for n, v in zip(self.header, values, strict=True)}
 
     def _object(self, text: str) -> Row:
         try:
             return {str(n): math.nan if v is None else float(v) for n, v in json.loads(text).items()}
         except (ValueError, TypeError, AttributeError):
-            raise BenchError(
-                "is not a row", f"{self.where} line {self.count}", '{"time_s": 5, "T_core": 21.4}'
-            ) from None
+            right = '{"time_s": 5, "T_core": 21.4}'
+            raise BenchError("is not a row", f"{self.where} line {self.count}", right) from None

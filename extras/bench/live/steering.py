@@ -109,23 +109,20 @@ class Steering:
         step = t - self.time
         if step <= 0.0:
             self.store.note({"event": "refused", "row": row})
-            what = "is out of order" if step > -self.bench.jump_s else "jumps back"
-            raise BenchError(
-                f"time {t:g} {what} after {self.time:g}", self.store.name, "one writer, with a clock that rises"
-            )
+            fault = "is out of order" if step > -self.bench.jump_s else "jumps back"
+            what = f"time {t:g} {fault} after {self.time:g}"
+            raise BenchError(what, self.store.name, "one writer, with a clock that rises")
         self.store.append(row)
         if self.last is not None and step > self.bench.jump_s:
-            raise BenchError(
-                f"the clock jumps from {self.time:g} to {t:g} s",
-                self.store.name,
-                f"steps up to {self.bench.jump_s:g} s",
-            )
+            what, right = f"the clock jumps from {self.time:g} to {t:g} s", f"steps up to {self.bench.jump_s:g} s"
+            raise BenchError(what, self.store.name, right)
         if self.last is None:
             self.begin = t
             self.store.note({"event": "begin", "begin_s": t})
         self.last, self.count, self.replays = row, self.count + 1, False
         self._check(row)
-        if not self.obeyed and self._near(row):
+        gaps = {k: abs(self._input(k.name, row) - self.now[k.name]) for k in self.bench.knobs}
+        if not self.obeyed and all(gap <= NEAR * max(k.most, 1e-9) for k, gap in gaps.items()):
             self.done()
         return self._ramp(step)
 
@@ -134,10 +131,6 @@ class Steering:
         if not self.obeyed:
             self.store.note({"event": "done", "time_s": self.time})
         self.obeyed, self.due = True, self.time + MINUTE * self.minutes
-
-    def _near(self, row: Row) -> bool:
-        gaps = [abs(self._input(k.name, row) - self.now[k.name]) <= NEAR * max(k.most, 1e-9) for k in self.bench.knobs]
-        return all(gaps)
 
     def _check(self, row: Row) -> None:
         for k in self.bench.knobs:
@@ -148,9 +141,8 @@ class Steering:
                 if c.is_temperature and c.place == limit.place:
                     T = float(c.in_memory(np.array([row.get(c.header, math.nan)]))[0])
                     if limit.most_C < T:
-                        raise BenchError(
-                            f"{c.name} reads {T:.1f} degC", f"[limits.{limit.name}]", f"{limit.most_C:g} degC at most"
-                        )
+                        what, right = f"{c.name} reads {T:.1f} degC", f"{limit.most_C:g} degC at most"
+                        raise BenchError(what, f"[limits.{limit.name}]", right)
 
     def _ramp(self, step: float) -> list[dict[str, float]]:
         """The next step towards the set point, no faster than each input may change."""
@@ -232,18 +224,9 @@ class Steering:
     def apply(self, thought: Thought) -> list[dict[str, float]]:
         """Goes on as thought. Returns set points to send."""
         stop = {"stop": thought.stop} if thought.stop else {}
-        odds = [list(o) for o in thought.assessment.odds[:5]]
-        self.store.note(
-            {
-                "event": "odds",
-                "time_s": thought.time,
-                "odds": odds,
-                "over": list(thought.assessment.over),
-                "unseen": list(thought.assessment.unseen),
-                "left_min": thought.left_min,
-                **stop,
-            }
-        )
+        now = thought.assessment
+        lists = {"odds": [list(o) for o in now.odds[:5]], "over": list(now.over), "unseen": list(now.unseen)}
+        self.store.note({"event": "odds", "time_s": thought.time, **lists, "left_min": thought.left_min, **stop})
         if thought.stop:
             return self.make_safe()
         if thought.choice is None:

@@ -64,9 +64,8 @@ class Store:
             self.header = list(row)
             self.rows.write(th.csv_lines([self.header]))
         if extra := next((n for n in row if n not in self.header), None):
-            raise BenchError(
-                f"column '{extra}' is new", str(self.path), f"the columns of the first row: {', '.join(self.header)}"
-            )
+            right = f"the columns of the first row: {', '.join(self.header)}"
+            raise BenchError(f"column '{extra}' is new", str(self.path), right)
         cells = (row.get(n, math.nan) for n in self.header)
         self.rows.write(",".join("" if math.isnan(v) else f"{v:.10g}" for v in cells) + "\n")
         self._flush(self.rows)

@@ -28,13 +28,8 @@ class Curve:
     why: str = ""
 
     def document(self) -> dict[str, Any]:
-        return {
-            "channel": self.channel,
-            "place": self.place,
-            "eq8": self.warming and self.warming.document(),
-            "equilibrium": self.equilibrium and self.equilibrium.document(),
-            "why": self.why,
-        }
+        eq8, steady = self.warming and self.warming.document(), self.equilibrium and self.equilibrium.document()
+        return {"channel": self.channel, "place": self.place, "eq8": eq8, "equilibrium": steady, "why": self.why}
 
 
 @dataclass(frozen=True)
@@ -66,13 +61,8 @@ class Curves:
             {"tests": list(names), "place": place, **pooled.document()}
             for (names, place), pooled in self.pooled.items()
         ]
-        return {
-            "case": self.case.name,
-            "revision": self.case.model.revision,
-            "agrees": self.agrees,
-            "tests": tests,
-            "repeats": equal,
-        }
+        head = {"case": self.case.name, "revision": self.case.model.revision, "agrees": self.agrees}
+        return {**head, "tests": tests, "repeats": equal}
 
 
 def curves(case: th.MeasuredCase, resolution_K: float = 0.5) -> Curves:
@@ -222,8 +212,5 @@ def assemblies(
 def worst(rows: Sequence[Assembly]) -> Mapping[str, Any]:
     """The summary the paper gives: typical and largest error (%), and whether the model counts as calibrated."""
     errors = [r.percent for r in rows]
-    return {
-        "typical_percent": float(np.median(errors)),
-        "largest_percent": max(errors),
-        "calibrated": all(e <= TOLERANCE for e in errors),
-    }
+    typical, calibrated = float(np.median(errors)), all(e <= TOLERANCE for e in errors)
+    return {"typical_percent": typical, "largest_percent": max(errors), "calibrated": calibrated}

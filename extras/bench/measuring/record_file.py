@@ -46,27 +46,16 @@ def _optional(table: th.TomlTable, key: str) -> float | None:
 
 
 def _cold(table: th.TomlTable) -> Cold:
-    cold = Cold(
-        table.number("room_degC"),
-        table.number("machine_degC"),
-        table.number("resistance_ohm"),
-        _optional(table, "emf_V"),
-        _optional(table, "speed_rpm"),
-        _optional(table, "range_ohm"),
-        _optional(table, "hours_since_run"),
-    )
+    needed = (table.number(key) for key in ("room_degC", "machine_degC", "resistance_ohm"))
+    others = (_optional(table, key) for key in ("emf_V", "speed_rpm", "range_ohm", "hours_since_run"))
+    cold = Cold(*needed, *others)
     table.close()
     return cold
 
 
 def _hot(table: th.TomlTable, file: Path) -> Hot:
-    hot = Hot(
-        table.number("ambient_degC"),
-        timed_pairs(table, file, 1.0),
-        _optional(table, "emf_V"),
-        _optional(table, "speed_rpm"),
-        _optional(table, "range_ohm"),
-    )
+    ambient, pairs = table.number("ambient_degC"), timed_pairs(table, file, 1.0)
+    hot = Hot(ambient, pairs, *(_optional(table, key) for key in ("emf_V", "speed_rpm", "range_ohm")))
     table.close()
     return hot
 

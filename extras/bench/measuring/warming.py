@@ -80,11 +80,8 @@ def fit_eq8(minutes: th.Array, T: th.Array, start_C: float | None = None, resolu
     finite = np.isfinite(T)
     minutes, T = minutes[finite], T[finite]
     if T.size < 5 or np.min(T) <= 0 or np.ptp(T) < 4 * resolution_K:
-        raise InputError(
-            f"{T.size} readings over {np.ptp(T) if T.size else 0:.2g} K",
-            "eq. 8",
-            f"5 or more above 0 degC that warm by more than {4 * resolution_K:g} K",
-        )
+        what = f"{T.size} readings over {np.ptp(T) if T.size else 0:.2g} K"
+        raise InputError(what, "eq. 8", f"5 or more above 0 degC that warm by more than {4 * resolution_K:g} K")
     end, first = float(T[-1]), float(T[0])
     guess = (end, np.log(min(first / end, 0.99)), -3.0 / (minutes[-1] - minutes[0]))
     p, covariance = curve_fit(eq8, minutes, T, guess, maxfev=5000)
@@ -194,15 +191,8 @@ def repeats(values: Sequence[float], u: float) -> Repeats:
         raise InputError(f"{x.size} runs with uncertainty {u:g}", "repeats", "2 or more runs, an uncertainty above 0")
     sd = float(x.std(ddof=1))
     chi = float(((x - x.mean()) ** 2).sum() / u**2)
-    return Repeats(
-        x.size,
-        float(x.mean()),
-        sd,
-        max(sd, u) / np.sqrt(x.size),
-        float(np.ptp(x)),
-        th.NORMAL_95 * np.sqrt(2.0) * u,
-        float(chi2.sf(chi, x.size - 1)),
-    )
+    spread, limit, p = float(np.ptp(x)), th.NORMAL_95 * np.sqrt(2.0) * u, float(chi2.sf(chi, x.size - 1))
+    return Repeats(x.size, float(x.mean()), sd, max(sd, u) / np.sqrt(x.size), spread, limit, p)
 
 
 def pooled_curves(minutes: Sequence[th.Array], T: Sequence[th.Array]) -> tuple[th.Array, th.Array, th.Array]:

@@ -45,11 +45,9 @@ class TwoPaths:
         return max((abs(v) for pair in self.residual.values() for v in pair), default=0.0)
 
     def document(self) -> dict[str, Any]:
-        return {
-            **{k: v for k, v in vars(self).items() if k != "residual"},
-            "largest_residual_K": self.largest_K,
-            "residual_K": {f"{k:g}": list(v) for k, v in self.residual.items()},
-        }
+        plain = {k: v for k, v in vars(self).items() if k != "residual"}
+        residual = {f"{k:g}": list(v) for k, v in self.residual.items()}
+        return {**plain, "largest_residual_K": self.largest_K, "residual_K": residual}
 
 
 def two_paths(
@@ -165,12 +163,8 @@ class Transfer:
         return all(r.within for r in self.rows)
 
     def document(self) -> dict[str, Any]:
-        return {
-            "case": self.case.name,
-            "parameters": list(self.parameters),
-            "agrees": self.agrees,
-            "rows": [r.document() for r in self.rows],
-        }
+        parameters, rows = list(self.parameters), [r.document() for r in self.rows]
+        return {"case": self.case.name, "parameters": parameters, "agrees": self.agrees, "rows": rows}
 
 
 def transferred(source: th.MeasuredCase, target: th.MeasuredCase) -> Transfer:

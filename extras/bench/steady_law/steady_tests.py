@@ -75,11 +75,8 @@ class SteadyTests:
 
     def only(self, rows: th.Ints) -> SteadyTests:
         """Some of the tests, on the scales of all of them."""
-        of = (self.inputs, self.heat, self.coolant, self.ambient, self.readings, self.thinner, self.mcp)
-        u, heat, coolant, ambient, readings, thinner, mcp = (x[rows] for x in of)
-        return replace(
-            self, inputs=u, heat=heat, coolant=coolant, ambient=ambient, readings=readings, thinner=thinner, mcp=mcp
-        )
+        names = ("inputs", "heat", "coolant", "ambient", "readings", "thinner", "mcp")
+        return replace(self, **{name: getattr(self, name)[rows] for name in names})
 
 
 def read_tests(file: Path, columns: Columns, scales: Scales | None = None) -> SteadyTests:

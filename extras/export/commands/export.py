@@ -4,15 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import Annotated, Any
 
+import numpy as np
 import typer
 
-from extras.export.compilers import compiler, here
+from extras.export.c_code import RUNTIME, c_files, state_bytes, step_operations
+from extras.export.compilers import AGREES_K, Compiled, compiler, difference, here, sampled
+from extras.export.model import Model, exported, reach_of
 from thermoscope import InputError, MissingDependency, ThermoscopeError, plugin as th
-
-if TYPE_CHECKING:
-    from extras.export.model import Model
 
 WORKBOOKS = ("xlsx", "csv")
 MODELS = ("c", "fmu", "json", "matlab")
@@ -55,12 +55,9 @@ def export_workbook(case: str, out: Path | None, form: str, target: str | None) 
         content = th.tables(folder)
     where, name = out or folder.settings.out, folder.settings.path.resolve().name
     paths = th.write_csvs(where, content) if form == "csv" else [th.write_xlsx(where / f"{name}.xlsx", content)]
-    document = {
-        "case": folder.case.name,
-        "files": [str(p) for p in paths],
-        "worksheets": [table.title for table in content],
-    }
-    th.give(document, target, lambda: th.Summary(f"{th.counted(len(paths), 'file')} written.", [str(p) for p in paths]))
+    files = [str(path) for path in paths]
+    document = {"case": folder.case.name, "files": files, "worksheets": [table.title for table in content]}
+    th.give(document, target, lambda: th.Summary(f"{th.counted(len(paths), 'file')} written.", files))
     return 0
 
 
@@ -68,9 +65,6 @@ def export_model(
     case: str, out: Path | None, form: str, limits: Mapping[str, float], version: int, target: str | None
 ) -> int:
     """The model itself, to run elsewhere."""
-    from extras.export.c_code import state_bytes, step_operations
-    from extras.export.model import exported
-
     with th.progress() as tell:
         folder = th.open_case(case, tell, untested=True)
         tell("collecting the network")
@@ -103,11 +97,6 @@ def _differences(folder: th.Folder, model: Model, tell: th.Progress) -> dict[str
 
     Raises ThermoscopeError where they disagree.
     """
-    import numpy as np
-
-    from extras.export.compilers import AGREES_K, Compiled, difference, sampled
-    from extras.export.model import reach_of
-
     tell("holding the code against the simulation")
     try:
         code = Compiled(model)
@@ -135,7 +124,6 @@ def _files(model: Model, form: str, version: int, tell: th.Progress) -> tuple[di
     """File name -> content; the platforms that compiled code in them runs on."""
     import json
 
-    from extras.export.c_code import RUNTIME, c_files
     from extras.export.document import document, mat
     from extras.export.fmu import fmu, identifier
 

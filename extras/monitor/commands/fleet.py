@@ -101,11 +101,9 @@ def _document(of: Population, fits: Mapping[str, float]) -> dict[str, Any]:
 def _drifts(of: Population, i: int) -> dict[str, Any]:
     if of.unit_drift is None or of.unit_drift_sd is None:
         return {}
-    rows = {
-        n: [100.0 * (of.unit_drift[i, k] + s * th.NORMAL_95 * of.unit_drift_sd[i, k]) for s in (-1.0, 0.0, 1.0)]
-        for k, n in enumerate(of.names)
-    }
-    return {"drift_percent_year": {n: [low, high] for n, (low, _, high) in rows.items()}}
+    pairs = zip(of.unit_drift[i], th.NORMAL_95 * of.unit_drift_sd[i], strict=True)
+    rows = {n: [100.0 * (drift + s * half) for s in (-1.0, 1.0)] for n, (drift, half) in zip(of.names, pairs)}
+    return {"drift_percent_year": rows}
 
 
 def _factor(mean: float, sd: float) -> list[float]:

@@ -32,15 +32,9 @@ def export_observer(
         design = designed(folder, tell)
         tell("writing the observer")
         filters = [design.as_learned(c) for c in sensors]
-        of = observer_model(
-            design.process,
-            design.noise,
-            design.rise_K,
-            [s.channel for s in filters],
-            th.standing_reference(folder.case),
-            looks,
-            np.array([s.bias_K for s in filters]),
-        )
+        learned, bias = [s.channel for s in filters], np.array([s.bias_K for s in filters])
+        reference = th.standing_reference(folder.case)
+        of = observer_model(design.process, design.noise, design.rise_K, learned, reference, looks, bias)
     where = out or folder.settings.out / "observer"
     paths = [th.write_whole(where / name, text) for name, text in observer_files(of).items()]
     document = {

@@ -45,14 +45,8 @@ def watch(
     if session.one is None:
         raise InputError("holds no row", follow, "rows of numbers under the header")
     file = th.write_whole(watched_file(folder, follow, out), session.csv())
-    document = {
-        "case": folder.case.name,
-        "revision": folder.case.model.revision,
-        "source": follow,
-        "like": name,
-        **session.document(),
-        "file": str(file),
-    }
+    head = {"case": folder.case.name, "revision": folder.case.model.revision, "source": follow, "like": name}
+    document = {**head, **session.document(), "file": str(file)}
     th.give(document, json, lambda: watch_summary(document))
     return 0
 

@@ -133,31 +133,14 @@ def population(units: Sequence[UnitHistory]) -> Population:
     sd = np.sqrt(np.einsum("uii->ui", P))
     error = _mean_sd(moments, weights)
     error[p:] = _mean_sd(moments, weights / weights.sum())[p:]
-    later = (
-        {}
-        if not drifts
-        else {
-            "drift": moments.mean[p:],
-            "drift_sd": error[p:],
-            "drift_spread": np.sqrt(moments.variance[p:]),
-            "unit_drift": m[:, p:],
-            "unit_drift_sd": sd[:, p:],
-        }
-    )
-    labels = tuple(u.name for u in units)
-    return Population(
-        names,
-        moments.mean[:p],
-        error[:p],
-        np.sqrt(moments.variance[:p]),
-        _equal(moments, weights, p),
-        labels,
-        m[:, :p],
-        sd[:, :p],
-        tuple(_outliers(moments, labels, names)),
-        middle,
-        **later,
-    )
+    labels, spread = tuple(u.name for u in units), np.sqrt(moments.variance)
+    first_p = (moments.mean[:p], error[:p], spread[:p], _equal(moments, weights, p))
+    outliers = tuple(_outliers(moments, labels, names))
+    out = Population(names, *first_p, labels, m[:, :p], sd[:, :p], outliers, middle)
+    if not drifts:
+        return out
+    out = replace(out, drift=moments.mean[p:], drift_sd=error[p:], drift_spread=spread[p:])
+    return replace(out, unit_drift=m[:, p:], unit_drift_sd=sd[:, p:])
 
 
 def _of_unit(unit: UnitHistory, middle: float, drifts: bool) -> tuple[th.Array, th.Array]:
@@ -218,15 +201,6 @@ def _outliers(of: _Moments, units: Sequence[str], names: Sequence[str]) -> list[
         chance = min(2.0 * float(norm.sf(abs(z[i, k]))) * z.size, 1.0)
         if chance < OUTLIER:
             near = [n for j, n in enumerate(names) if j != k and z[i, k] ** 2 - z[i, j] ** 2 < 10.0]
-            out.append(
-                Outlier(
-                    units[i],
-                    names[k],
-                    float(u[i, k] / information[i, k]),
-                    float(information[i, k] ** -0.5),
-                    float(z[i, k]),
-                    chance,
-                    tuple(near),
-                )
-            )
+            change, sd = float(u[i, k] / information[i, k]), float(information[i, k] ** -0.5)
+            out.append(Outlier(units[i], names[k], change, sd, float(z[i, k]), chance, tuple(near)))
     return out

@@ -43,7 +43,8 @@ def with_motion(network: Network, tests: Sequence[th.Test]) -> Network:
 
 def _following(network: Network, p: Parameter, signal: str, level: float) -> Network:
     """The network in which the links of a parameter may grow with a signal."""
-    links = [x for x in network.links if (x.name, 1.0) in p.targets and _still(x)]
+    links = [x for x in network.links if (x.name, 1.0) in p.targets and isinstance(x.law, th.Fixed)]
+    links = [x for x in links if x.kind != "stream" and not x.origin]
     if p.mapping != "log" or not links:
         return network
     names = [f"{x.name} by {signal}" for x in links]
@@ -51,22 +52,9 @@ def _following(network: Network, p: Parameter, signal: str, level: float) -> Net
         assert isinstance(link.law, th.Fixed)
         law = th.InputPower(link.law.value, ((signal, level, 1.0),), link.law.temperature)
         network = th.copy_element(network, link, name, law)
-    new = Parameter(
-        f"{LEARNED}{p.name} by {signal}",
-        tuple((n, 1.0) for n in names),
-        0.0,
-        "1",
-        0.0,
-        10.0,
-        p.prior_sd,
-        "amplitude",
-        0.0,
-    )
+    name, targets = f"{LEARNED}{p.name} by {signal}", tuple((n, 1.0) for n in names)
+    new = Parameter(name, targets, 0.0, "1", 0.0, 10.0, p.prior_sd, "amplitude", 0.0)
     return replace(network, parameters=(*network.parameters, new))
-
-
-def _still(link: th.Link) -> bool:
-    return isinstance(link.law, th.Fixed) and link.kind != "stream" and not link.origin
 
 
 @dataclass(frozen=True)

@@ -133,9 +133,8 @@ class SensorState:
                 self.dropped = ""
         elif self.missing_s >= max(LOST_S, 3.0 * step_s):
             self.dropped, self.since_s = "lost", time_s - self.missing_s
-        elif self.same_s >= max(FROZEN_S, LONGER * self.longest_s) and self._others_moved(around, sigma_K):
+        elif self.same_s >= max(FROZEN_S, LONGER * self.longest_s) and np.any(
+            np.abs(around - self.then) > MOTION * sigma_K
+        ):
             self.dropped, self.since_s = "frozen", time_s - self.same_s
         return good and not self.dropped
-
-    def _others_moved(self, around: th.Array, sigma_K: th.Array) -> bool:
-        return bool(np.any(np.abs(around - self.then) > MOTION * sigma_K))

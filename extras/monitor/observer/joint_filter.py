@@ -80,7 +80,8 @@ class _Run:
             self._step(f, self.u[k - 1] + share * (self.u[k] - self.u[k - 1]), h)
         z = np.concatenate([self.x, self.u[k]])
         keeps = [np.exp(-seconds / c.lag_s) if k and c.lag_s > 0.0 else 0.0 for c in self.test.channels]
-        readings = np.array([self._reading_of(c, z) for c in self.test.channels])
+        places, of = [self.at[c.name] for c in self.test.channels], self.of.constants
+        readings = np.array([of.sensor_row(j, self.w).at(z) + of.bias(j, self.w) for j in places])
         self.lagged = readings + np.array(keeps) * (self.lagged - readings)
         change = np.zeros(len(self.P))
         for i, c in enumerate(self.test.channels):
@@ -115,10 +116,6 @@ class _Run:
         P[s : self.n, s : self.n] += (1.0 - keeps**2) * self.of.noise.covariance
         P[s:, :s], P[self.n :, s : self.n] = P[:s, s:].T, P[s : self.n, self.n :].T
         self.q = keeps * self.q
-
-    def _reading_of(self, c: th.Channel, z: th.Array) -> float:
-        j = self.at[c.name]
-        return self.of.constants.sensor_row(j, self.w).at(z) + self.of.constants.bias(j, self.w)
 
     def _slope(self, c: th.Channel, z: th.Array) -> th.Array:
         """(N,) what a reading sees of everything."""

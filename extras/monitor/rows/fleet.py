@@ -77,14 +77,9 @@ class Reader:
         inputs = {n: mean(u) for n, u in rows.inputs.items()}
         inputs |= {f"{th.LAW_RUNNING}{test.name}": np.zeros(time.size) for test in self.tests}
         air = {n: mean(u) for n, u in rows.boundaries.items()}
-        return th.Test(
-            recording.unit, "calibrate", time - time[0], inputs, air, tuple(channels), _initial(channels, air)
-        )
-
-
-def _initial(channels: Sequence[th.Channel], air: dict[str, th.Array]) -> dict[str, float]:
-    first = {c.place: float(c.y[np.isfinite(c.y)][0]) for c in channels if np.isfinite(c.y).any()}
-    return first or {name: float(u[0]) for name, u in air.items()}
+        first = {c.place: float(c.y[np.isfinite(c.y)][0]) for c in channels if np.isfinite(c.y).any()}
+        initial = first or {name: float(u[0]) for name, u in air.items()}
+        return th.Test(recording.unit, "calibrate", time - time[0], inputs, air, tuple(channels), initial)
 
 
 def recordings(names: Sequence[Path]) -> list[Recording]:
@@ -92,11 +87,9 @@ def recordings(names: Sequence[Path]) -> list[Recording]:
     files = [f for name in names for f in (_inside(name) if name.is_dir() else [name])]
     out = [_recording(file) for file in files]
     if (count := len({r.unit for r in out})) < 3:
-        raise InputError(
-            f"{'one motor is' if count == 1 else f'{count} motors are'} no fleet",
-            ", ".join(map(str, names)),
-            "recordings of three or more, named UNIT.csv or UNIT@2026-03.csv",
-        )
+        what = f"{'one motor is' if count == 1 else f'{count} motors are'} no fleet"
+        right = "recordings of three or more, named UNIT.csv or UNIT@2026-03.csv"
+        raise InputError(what, ", ".join(map(str, names)), right)
     dated = [r for r in out if r.year]
     if dated and len(dated) < len(out):
         bare = next(r for r in out if not r.year)

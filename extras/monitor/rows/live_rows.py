@@ -90,11 +90,8 @@ class LiveTable:
     def _forward_fill(self, name: str, values: th.Array, first: int) -> th.Array:
         if not np.isfinite(values[0]):
             if name not in self.last:
-                raise InputError(
-                    f"column '{name}' begins with no number",
-                    f"{self.where} line {first}",
-                    "what drives the machine from the first row on",
-                )
+                what, right = f"column '{name}' begins with no number", "what drives the machine from the first row on"
+                raise InputError(what, f"{self.where} line {first}", right)
             values[0] = self.last[name]
         at = np.maximum.accumulate(np.where(np.isfinite(values), np.arange(values.size), 0))
         self.last[name] = float(values[at[-1]])
@@ -107,11 +104,9 @@ class LiveTable:
         time = th.seconds_of(table, self.sheet, file)
         wrong = np.flatnonzero(~(np.diff(time, prepend=self.time) > 0.0))
         if wrong.size:
-            raise InputError(
-                f"time {table[self.sheet.time][wrong[0]]:g} does not come after the one before",
-                f"{self.where} line {table.line + wrong[0]}",
-                "times that rise from row to row",
-            )
+            what = f"time {table[self.sheet.time][wrong[0]]:g} does not come after the one before"
+            where = f"{self.where} line {table.line + wrong[0]}"
+            raise InputError(what, where, "times that rise from row to row")
         self.time = float(time[-1])
         return time
 
@@ -166,9 +161,5 @@ def _fitting(
             th.notes(first.notes)
             return fitting, one, (part for part in chain([first], parts) if part.rows)
     name = next(iter(sheets))
-    lacks = tables[name].missing()[0]
-    raise InputError(
-        f"column '{lacks}' is not in the header",
-        f"{follow} (read as test '{name}')",
-        th.suggestion(lacks, first.columns),
-    )
+    lacks, where = tables[name].missing()[0], f"{follow} (read as test '{name}')"
+    raise InputError(f"column '{lacks}' is not in the header", where, th.suggestion(lacks, first.columns))

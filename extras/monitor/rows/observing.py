@@ -102,9 +102,5 @@ def joined(before: Rows | None, now: Rows) -> Rows:
     def both(a: dict[str, th.Array], b: dict[str, th.Array]) -> dict[str, th.Array]:
         return {n: np.concatenate([a[n][-1:], v]) for n, v in b.items()}
 
-    return Rows(
-        np.concatenate([before.time[-1:], now.time]),
-        both(before.inputs, now.inputs),
-        both(before.boundaries, now.boundaries),
-        both(before.readings, now.readings),
-    )
+    pairs = ((getattr(before, n), getattr(now, n)) for n in ("inputs", "boundaries", "readings"))
+    return Rows(np.concatenate([before.time[-1:], now.time]), *(both(a, b) for a, b in pairs))

@@ -123,11 +123,8 @@ def compare_designs(
     picture : a PNG of all on one scale
     around : boundaries (degC) and inputs of all, such as ambient=40.0
     """
-    return Designs(
-        compared_designs(
-            [str(one) for one in machines], limits or {}, around, bands, None if picture is None else Path(picture)
-        )
-    )
+    files, png = [str(one) for one in machines], None if picture is None else Path(picture)
+    return Designs(compared_designs(files, limits or {}, around, bands, png))
 
 
 def design(folder: th.Folder, limits: Mapping[str, float], around: Mapping[str, float]) -> Design:

@@ -148,11 +148,8 @@ def _write(
         name, does = row["design"], design.performance.objectives
         comments = [f"A design of {file.where}: " + ", ".join(f"{o} {does[o]:.4g}" for o in problem.aimed)]
         values = problem.space.named(design.x)
-        out.append(
-            th.write_whole(
-                folder / f"{name}.toml", machine_file_text(file, values, f"{file.machine.name}-{name}", comments)
-            )
-        )
+        text = machine_file_text(file, values, f"{file.machine.name}-{name}", comments)
+        out.append(th.write_whole(folder / f"{name}.toml", text))
     return [str(path) for path in out]
 
 

@@ -257,15 +257,10 @@ def rating_summary(document: Mapping[str, Any]) -> th.Summary:
     if cycle := document["cycle"]:
         parts.append(_of_cycle(cycle))
     parts += [_of_map(document["map"], main)] if document["map"] else []
-    shares = [
-        {
-            **d,
-            "share": _percent(d["share"]),
-            "share_before": _percent(d["share_before"]),
-            "ci95": [100.0 * s for s in d["share_ci95"] or ()],
-        }
-        for d in document["derating"]
-    ]
+    shares = []
+    for d in document["derating"]:
+        percent = {key: _percent(d[key]) for key in ("share", "share_before")}
+        shares.append({**d, **percent, "ci95": [100.0 * s for s in d["share_ci95"] or ()]})
     elsewhere = "over=of | *value | unit | *% of it=share | *95 % from=low | *to=high | before (%)=share_before"
     parts.append(th.Table.of("Continuous rating elsewhere", shares, elsewhere, **ends))
     over_speed = f"form | *speed (1/min)=speed_rpm | {band.replace('*95', '95').replace('*to', 'to')}"

@@ -52,16 +52,8 @@ class Condensations:
         spots = hot_spots(larger, rows, {s.name: s.limit for s in self.problem.spots})
         inputs = {n: u for n, u in self.problem.inputs.items() if n in larger.inputs}
         from_machine = tuple(n for n in self.problem.from_machine if n in inputs)
-        return replace(
-            self.problem,
-            network=larger,
-            values={},
-            inputs=inputs,
-            spots=spots,
-            scaling=None,
-            sure=None,
-            from_machine=from_machine,
-        )
+        bare = replace(self.problem, values={}, scaling=None, sure=None)
+        return replace(bare, network=larger, inputs=inputs, spots=spots, from_machine=from_machine)
 
     def ratios(self, design: Mapping[str, float]) -> dict[str, float]:
         """Quantity -> condensed over scaled, at values of the variables."""

@@ -210,9 +210,6 @@ def _refuse_hot_at_no_load(problem: Problem, loads: tuple[str, ...]) -> None:
     performance = idle.judged(usual)
     for s in problem.spots:
         if performance.places[s.name] >= s.limit:
-            raise InputError(
-                f"the limit of '{s.name}', {s.limit:g} degC, is exceeded without any load "
-                f"({performance.places[s.name]:.1f} degC)",
-                "--limit",
-                "a higher limit, cooler surroundings or a lower speed",
-            )
+            hot, right = performance.places[s.name], "a higher limit, cooler surroundings or a lower speed"
+            what = f"the limit of '{s.name}', {s.limit:g} degC, is exceeded without any load ({hot:.1f} degC)"
+            raise InputError(what, "--limit", right)

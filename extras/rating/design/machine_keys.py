@@ -91,15 +91,13 @@ class MachineFile:
         """Between bounds (of the key's unit), or around its value as usual."""
         usual = self.value(key)
         if usual == 0.0 or not self.knows(key):
-            raise InputError(f"'{key}' is not a number of {self.where}", "--vary", th.suggestion(key, self._keys()))
+            keys = [k for k in (*FLOWS, *self.parameters) if self.value(k) > 0.0]
+            raise InputError(f"'{key}' is not a number of {self.where}", "--vary", th.suggestion(key, keys))
         low, high = bounds or tuple(share * usual for share in USUAL.get(key, (0.5, 2.0)))
         p = self.parameters.get(key)
         if p is not None and bounds is None:
             low, high = max(low, p.low), min(high, p.high)
         return Variable(key, low, high, usual, self._whole(key), key in self.parameters)
-
-    def _keys(self) -> list[str]:
-        return [k for k in (*FLOWS, *self.parameters) if self.value(k) > 0.0]
 
     def _whole(self, key: str) -> bool:
         return key in self.parameters and isinstance(self.parameters[key].default, int)

@@ -36,9 +36,8 @@ class Electrics:
         if self.series is not None:
             return float(self.series.current(torque))
         if self.rated is None:
-            raise InputError(
-                "nothing says what current a torque takes", "--torque", "[ratings] torque_Nm and current_A"
-            )
+            right = "[ratings] torque_Nm and current_A"
+            raise InputError("nothing says what current a torque takes", "--torque", right)
         return torque / self.rated[0] * self.rated[1]
 
     def torque(self, current: float) -> float | None:
@@ -113,27 +112,18 @@ class Driven:
         """Inputs of a network at the gains of a design, and limit -> the share by which it is exceeded."""
         gains = {GAINS[key]: design[key] for key in GAINS if key in design}
         R = np.full(self.time.size, self.warm * self.machine.R)
-        course = th.drive_cycle(
-            self.machine,
-            self.vehicle,
-            replace(self.controller, **gains),
-            self.time,
-            self.target_mps,
-            self.slope,
-            resistance=R,
-        )
+        drive = (self.machine, self.vehicle, replace(self.controller, **gains))
+        course = th.drive_cycle(*drive, self.time, self.target_mps, self.slope, resistance=R)
         step = np.diff(self.time, prepend=self.time[0]) / (self.time[-1] - self.time[0])
         mean = {name: float(step @ u) for name, u in course.inputs().items()}
         mean["current_A"] = float(step @ course.current_A**2) ** 0.5
-        short = float(step @ np.maximum(self.target_mps - course.vehicle_speed_mps, 0.0)) / float(
-            step @ self.target_mps
-        )
+        lacking = np.maximum(self.target_mps - course.vehicle_speed_mps, 0.0)
+        short = float(step @ lacking) / float(step @ self.target_mps)
         return mean, {f"speed kept within {100.0 * LAG:g} %": short / LAG - 1.0}
 
 
-EFFICIENCY = (
-    0.5  # of pump or fan with its motor: small wet-rotor pumps and axial fans reach 0.4 to 0.6, also on a shaft
-)
+# Of pump or fan with its motor: small wet-rotor pumps and axial fans reach 0.4 to 0.6, also on a shaft
+EFFICIENCY = 0.5
 FAN = "fan_flow_m3h"
 
 
@@ -179,15 +169,13 @@ def _shaft_fan(cowl: th.Cowl, fins: th.Fins, rpm: float, ambient_C: float) -> fl
 def _pump(machine: th.MachineDescription, cooling: th.Cooling, flow: float) -> float:
     """flow (m3/s): jackets that the inlet feeds lie side by side, those that another feeds one after the other."""
     ends = [j for j in cooling.feeds if j not in cooling.feeds.values()]
-    drops = [
-        sum(_drop(machine, j, cooling.share(j) * flow, cooling) for j in (end, *cooling.before(end)) if j != th.INLET)
-        for end in ends
-    ]
+
+    def drop(jacket: str) -> float:
+        mine = cooling.share(jacket) * flow
+        return th.pressure_drop(way_of(machine, jacket), mine, cooling.liquid) if mine > 0.0 else 0.0
+
+    drops = [sum(drop(j) for j in (end, *cooling.before(end)) if j != th.INLET) for end in ends]
     return th.pumping_power(max(drops, default=0.0), flow, EFFICIENCY)
-
-
-def _drop(machine: th.MachineDescription, jacket: str, flow: float, cooling: th.Cooling) -> float:
-    return th.pressure_drop(way_of(machine, jacket), flow, cooling.liquid) if flow > 0.0 else 0.0
 
 
 def way_of(machine: th.MachineDescription, jacket: str) -> Way:

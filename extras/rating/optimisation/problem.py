@@ -90,10 +90,8 @@ class Problem:
         """The design at values of the variables. Raises InputError where no machine can be built there."""
         machine = None if self.machine_at is None else self.machine_at(design)
         inputs, lag = self._inputs(design, machine)
-        values = {
-            **self.values,
-            **({} if self.scaling is None or machine is None else self.scaling.of(machine, inputs)),
-        }
+        scaled = {} if self.scaling is None or machine is None else self.scaling.of(machine, inputs)
+        values = {**self.values, **scaled}
         rest, runaway = self._rest(values, inputs)
         share = self.space.share(design)
         copper = losses(self.network, values, inputs, rest.z, ("copper",)) * self.corrections.ratio(COPPER, share)

@@ -107,13 +107,9 @@ def _posed(problem: Problem, archive: list[Design], executor: Executor | None) -
 
     class Judged(Posed):
         def __init__(self) -> None:
-            super().__init__(
-                n_var=len(space.variables),
-                n_obj=len(problem.aimed),
-                n_ieq_constr=len(limits),
-                xl=np.array([v.low for v in space.variables]),
-                xu=np.array([v.high for v in space.variables]),
-            )
+            low, high = np.transpose([(v.low, v.high) for v in space.variables])
+            numbers = {"n_var": low.size, "n_obj": len(problem.aimed), "n_ieq_constr": len(limits)}
+            super().__init__(**numbers, xl=low, xu=high)
 
         def _evaluate(self, X: th.Array, out: dict[str, th.Array], *args: Any, **others: Any) -> None:
             designs = judged(problem, X, executor)
@@ -155,8 +151,5 @@ def infeasible(designs: Sequence[Design]) -> InputError:
     nearest = min(fits, key=lambda d: sum(max(e, 0.0) for e in d.performance.excess.values()))
     excess = {n: e for n, e in nearest.performance.excess.items() if e > 0.0}
     worst = ", ".join(f"'{n}' by {100.0 * e:.3g} %" for n, e in sorted(excess.items(), key=lambda p: -p[1]))
-    return InputError(
-        f"no design of {len(designs)} meets all limits: the nearest one exceeds {worst}",
-        "--limit",
-        "less torque, a higher limit, or wider bounds (--vary NAME=LOW:HIGH)",
-    )
+    what = f"no design of {len(designs)} meets all limits: the nearest one exceeds {worst}"
+    return InputError(what, "--limit", "less torque, a higher limit, or wider bounds (--vary NAME=LOW:HIGH)")

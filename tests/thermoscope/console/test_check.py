@@ -19,7 +19,7 @@ def test_missing_gl_is_needed_and_has_a_command(monkeypatch, capsys):
 
 def test_missing_browser_is_optional(monkeypatch):
     monkeypatch.setattr(check, "_gl", lambda: True)
-    monkeypatch.setattr(check, "_browser", lambda browsers: False)
+    monkeypatch.setattr(check.shutil, "which", lambda *_, **__: None)
     assert check.check(target="-") == 0
 
 

@@ -70,9 +70,8 @@ def narrow_doubt(case: str, name: str, size: str, target: str | None) -> int:
     usual = sigma or {f"boundary:{b}": folder.case.doubt["boundary"] for t in tests for b in t.boundaries if b == name}
     if not usual:
         names = sorted({b for t in tests for b in t.boundaries} | {c.name for t in tests for c in t.channels})
-        raise InputError(
-            f"'{name}' is neither a boundary nor a sensor", "thermoscope explain answer", suggestion(name, names)
-        )
+        what = f"'{name}' is neither a boundary nor a sensor"
+        raise InputError(what, "thermoscope explain answer", suggestion(name, names))
     (subject, widest), where = next(iter(usual.items())), f"thermoscope explain answer {name} '{size}'"
     match = re.fullmatch(r"\s*([0-9.]+(?:e-?[0-9]+)?)\s*K?\s*", number)
     if not match:
@@ -89,11 +88,8 @@ def open_question(folder: Folder) -> str:
     """What the last diagnosis asked about."""
     question = (last_diagnosis(folder) or {}).get("question")
     if not question:
-        raise InputError(
-            "the last diagnosis asked nothing",
-            f"case '{folder.case.name}'",
-            "thermoscope explain diagnose first, or --about a test, an event or a fault",
-        )
+        right = "thermoscope explain diagnose first, or --about a test, an event or a fault"
+        raise InputError("the last diagnosis asked nothing", f"case '{folder.case.name}'", right)
     return str(question["about"])
 
 
@@ -113,7 +109,6 @@ def checked_subject(folder: Folder, about: str) -> str:
                 raise InputError(f"unknown test '{test}'", f"--about {about}", f"known: {', '.join(tests)}")
             checked(window, test, float(tests[test].time[0]), float(tests[test].time[-1]), f"--about {about}")
     elif about not in tests and not _fault(about, tests) and not any(about in t.inputs for t in tests.values()):
-        raise InputError(
-            f"'{about}' is not a test, event or fault", "--about", f"one of {', '.join(tests)}, or as asked"
-        )
+        right = f"one of {', '.join(tests)}, or as asked"
+        raise InputError(f"'{about}' is not a test, event or fault", "--about", right)
     return about

@@ -19,7 +19,7 @@ from thermoscope.console.options import Case, Json, Only, Quick, Without
 from thermoscope.console.summary import Summary, sentences
 from thermoscope.console.terminal import Progress, give, notes, progress
 from validation import tables
-from validation.parameters.unknowns import value_words
+from validation.parameters.unknowns import strain_words, value_words
 
 if TYPE_CHECKING:
     from thermoscope.case_folder.folder import Folder
@@ -97,7 +97,6 @@ def diagnosed(
     from validation.comparison.error_budget import documents
     from validation.diagnosis import untold
     from validation.inference.conditions import check_names
-    from validation.parameters.unknowns import strain_words
     from validation.scope import Scope
 
     checked_diagnosis(folder)

@@ -23,6 +23,7 @@ from thermoscope.commands.open_case import open_case_for_writing, save_diagnosis
 from thermoscope.console.options import Case, Json
 from thermoscope.console.summary import Summary
 from thermoscope.console.terminal import give, notes, progress
+from validation.parameters.unknowns import strain_words
 from validation.tables import next_tests, offers
 
 if TYPE_CHECKING:
@@ -39,7 +40,6 @@ def improve(
     target: Json = None,
 ) -> int:
     """Diagnose, ask, add, again, until the model is adequate. Exit code 1 if it stops before."""
-    from validation.parameters.unknowns import strain_words
     from validation.revision.improvement import Supervisor, improve as climb, singletons
 
     with progress() as tell:

@@ -21,6 +21,7 @@ from thermoscope.commands.open_case import fingerprint, store, stored
 from thermoscope.console.options import Anyway, Case, Json
 from thermoscope.console.summary import Summary
 from thermoscope.console.terminal import Progress, give, notes
+from validation.parameters.unknowns import value_words, working
 
 if TYPE_CHECKING:
     from validation.revision.revise import Revision
@@ -38,7 +39,6 @@ def calibrate(
 ) -> int:
     """Fit the declared parameters to the calibration tests, with intervals and what the data cannot identify."""
     from validation.calibration.staged_fit import Search
-    from validation.parameters.unknowns import working
     from validation.revision.revise import calibrate as fitted
 
     def step(folder: Folder, tell: Progress) -> Revision:
@@ -84,8 +84,6 @@ class Unfinished:
 
     def show(self, folder: Folder, called: str) -> None:
         """What is known of a fit that the user stopped, and where it is kept; no document, which is of a whole fit."""
-        from validation.parameters.unknowns import value_words, working
-
         parameters = [p for p in working(folder.case)[1].parameters if p.name in self.reached and not of_measurement(p)]
         values = {p: (folder.case.model.values.get(p.name, p.value), self.reached[p.name]) for p in parameters}
         farthest_first = sorted(

@@ -13,6 +13,7 @@ from geom.errors import ThermoscopeError
 from geom.escapes import csv_lines
 from geom.storage import write_whole
 from geom.table import Table
+from lumped.transfer.ranges import within_silence
 from thermoscope.case_folder.folder import load_machine_file
 from thermoscope.console.options import ACCURACY, Accuracy, Json, Machine, Out
 from thermoscope.console.summary import Summary
@@ -104,7 +105,6 @@ def bearable(built: Built) -> tuple[dict[str, float], Array]:
 def _rest(network: Network, point: Mapping[str, float]) -> Array | None:
     """Where a network comes to rest (degC), None where that is too hot for insulation, or nowhere."""
     from lumped.build.crosscheck import steady_state
-    from lumped.transfer.ranges import within_silence
 
     means = [i for i, state in enumerate(network.states) if "#" not in state]
     with suppress(ThermoscopeError), within_silence():  # thermal runaway: copper's losses grow faster than its cooling

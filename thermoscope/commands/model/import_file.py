@@ -9,9 +9,11 @@ from typing import Annotated, Any
 
 import typer
 
+from geom import import_draft
 from geom.errors import InputError
 from geom.importing.assumptions import TEMPLATES, USUAL_TEMPLATE
 from geom.importing.draft import ASSUMED, COPIED, UNUSED, Draft
+from geom.machine_file import machine_from
 from geom.text import counted
 from lumped.machine.loss_sources import checked_losses
 from thermoscope.commands.model.machines import write_machine_file
@@ -56,8 +58,6 @@ def import_(
     target: Json = None,
 ) -> int:
     """A machine file of another program as one of ours: what was taken, what is assumed, what was not understood."""
-    from geom import import_draft
-
     if case is not None and (out is not None or machine is not None):
         raise InputError("--case holds the machine file itself", "--case", "without --out and --machine")
     if machine is not None:
@@ -84,8 +84,6 @@ def import_(
 
 def write_import(draft: Draft, text: str, folder: Path) -> Path:
     """The machine file in a folder. InputError where it cannot be built, or one of its name lies there."""
-    from geom.machine_file import machine_from
-
     checked_losses(machine_from(tomllib.loads(text), str(draft.path)))
     return write_machine_file(draft.name, text, folder)
 

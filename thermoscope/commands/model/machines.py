@@ -37,11 +37,8 @@ def machines(
             near = ", ".join(get_close_matches(copied, library(), cutoff=0.0))
             raise InputError(f"no machine {copied!r} comes along", "--copy", f"for example {near}")
         file = write_machine_file(copied, library()[copied].read_bytes(), out or Path())
-        give(
-            {"machine": copied, "file": file},
-            target,
-            lambda: Summary(f"{file}: yours to change.", [], f"Next: thermoscope model build {quote(str(file))}"),
-        )
+        summary = Summary(f"{file}: yours to change.", [], f"Next: thermoscope model build {quote(str(file))}")
+        give({"machine": copied, "file": file}, target, lambda: summary)
         return 0
     entries = catalogue()
     page = write_library(out) if out is not None else None

@@ -140,18 +140,11 @@ def unmeasured(folder: Folder, result: revise.Revision) -> list[dict[str, Any]]:
 
 def recorded(result: revise.Revision, evidence: Mapping[str, float | str]) -> Revision:
     """A step as model.toml keeps it."""
-    return Revision(
-        0,
-        result.action,
-        tuple(e.name for e in result.model.effects),
-        result.effect or "",
-        dict(result.model.values),
-        {p.name: p.ci95 for p in result.parameters},
-        {t.name: (t.before, t.after) for t in result.tests if isfinite(t.before)},
-        result.why,
-        dict(evidence),
-        reference=result.model.reference,
-    )
+    effects, values = tuple(e.name for e in result.model.effects), dict(result.model.values)
+    intervals = {p.name: p.ci95 for p in result.parameters}
+    rmse = {t.name: (t.before, t.after) for t in result.tests if isfinite(t.before)}
+    step = Revision(0, result.action, effects, result.effect or "", values, intervals, rmse, result.why, dict(evidence))
+    return replace(step, reference=result.model.reference)
 
 
 def evidence(folder: Folder, result: revise.Revision) -> dict[str, float | str]:
@@ -191,11 +184,8 @@ def revision_summary(document: Mapping[str, Any], folder: Folder, called: str) -
         _fixed(document["parameters"]),
         f"The data do not fix {counted(len(blind), 'parameter')}: {few}" if blind else "",
     ]
-    return Summary(
-        " ".join(filter(None, [*_outcome_words(document), outcome])),
-        parts,
-        f"Next: thermoscope {step} {quote(called)}; --json FILE",
-    )
+    sentence = " ".join(filter(None, [*_outcome_words(document), outcome]))
+    return Summary(sentence, parts, f"Next: thermoscope {step} {quote(called)}; --json FILE")
 
 
 def _outcome_words(document: Mapping[str, Any]) -> list[str]:

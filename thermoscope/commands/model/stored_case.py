@@ -6,22 +6,22 @@ import math
 from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from shlex import quote
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from geom.errors import InputError
 from geom.escapes import toml_key, toml_value
 from geom.importing.draft import COPIED, Draft
+from geom.machine_file import machine_from
 from geom.storage import write_whole
 from geom.table import Table
 from geom.text import counted
+from lumped.build.pipeline import build
 from lumped.machine.loss_sources import checked_losses
 from lumped.machine.path import stem
-from thermoscope.commands.model.stored_losses import NEGLIGIBLE_W, loss_words
+from lumped.model.network import Network
+from thermoscope.commands.model.stored_losses import NEGLIGIBLE_W, loss_words, nearest_losses, rms_ratio, steady_rises
 from thermoscope.console.summary import Summary
 from thermoscope.console.terminal import progress
-
-if TYPE_CHECKING:
-    from lumped.model.network import Network
 
 TEST = "stored"
 READINGS = "stored.temperatures.csv"
@@ -37,13 +37,10 @@ def write_stored_case(draft: Draft, folder: Path) -> dict[str, Any]:
     Where the losses of the file cannot have made its temperatures, those that come nearest stand in the draft instead.
     InputError where nothing can be compared, or something lies there; nothing is written.
     """
-    from geom.machine_file import machine_from
-    from lumped.build.pipeline import build
     from measured.importing.case_files import check_new_folder, folder_whole
     from measured.recordings.data_table import csv_text
     from thermoscope.case_folder.folder import patient_of
     from thermoscope.case_folder.settings import read_settings
-    from thermoscope.commands.model.stored_losses import nearest_losses, rms_ratio, steady_rises
 
     check_new_folder(folder)  # before minutes of building
     if not draft.readings:

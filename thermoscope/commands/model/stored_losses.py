@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -108,20 +108,17 @@ def nearest_losses(rises: SteadyRises) -> dict[str, Any]:
     losses = rises.nearest(start)
     misfit = rises.misfit(losses)
     sources = sum(watts >= NEGLIGIBLE_W for watts in losses.values())
-    one_free = sorted(_one_free(rises, losses)) if len(rises.names) > sources + 1 else []  # else nothing tells
+    one_free = []
+    for p in matching(rises.network, ("h.*", "contact.*")) if len(rises.names) > sources + 1 else ():  # else none tells
+        values = rises.nearest(losses, [p.name])
+        one_free.append((rms_ratio(rises.misfit(values)), p.name, values[p.name]))
     rows = zip(rises.names, rises.stored.tolist(), np.exp(misfit).tolist(), strict=True)
     return {
         "rows": [{"place": name, "stored_K": stored, "ratio": ratio} for name, stored, ratio in rows],
         "losses_W": dict(zip(rises.heated, losses.values(), strict=True)),
         "rms": rms_ratio(misfit),
-        "one_free": [{"name": name, "factor": factor, "rms": left} for left, name, factor in one_free],
+        "one_free": [{"name": name, "factor": factor, "rms": left} for left, name, factor in sorted(one_free)],
     }
-
-
-def _one_free(rises: SteadyRises, losses: Mapping[str, float]) -> Iterator[tuple[float, str, float]]:
-    for p in matching(rises.network, ("h.*", "contact.*")):
-        values = rises.nearest(losses, [p.name])
-        yield rms_ratio(rises.misfit(values)), p.name, values[p.name]
 
 
 def loss_words(search: Mapping[str, Any]) -> list[str]:

@@ -54,17 +54,12 @@ def film(
         sensors = [row for w, model in models.items() for row in misses(folder, model, test, played[w][0], limit_K)]
         when = [(t, w) for w, (times, _) in played.items() for t in times]
         titles = [title(test, t, w, row) for (t, w), row in zip(when, sensors, strict=True)]
-        T = np.concatenate([values for _, values in played.values()])
-        animate(
-            nodes,
-            [t for times, _ in played.values() for t in times],
-            T,
-            file,
-            titles=titles,
-            sensors=sensors,
-            limits=runs.temperature_range(folder, nodes),
-            tell=lambda k: tell(f"drawing picture {k}/{len(T)}"),
-        )
+        T, limits = np.concatenate([values for _, values in played.values()]), runs.temperature_range(folder, nodes)
+
+        def tell_number(number: int) -> None:
+            tell(f"drawing picture {number}/{len(T)}")
+
+        animate(nodes, [t for t, _ in when], T, file, titles=titles, sensors=sensors, limits=limits, tell=tell_number)
     give({"case": folder.case.name, "film": str(file)}, target, lambda: Summary(f"{file}"))
     return 0
 

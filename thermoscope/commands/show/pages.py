@@ -7,7 +7,7 @@ from dataclasses import replace
 from datetime import datetime
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
@@ -26,12 +26,12 @@ from thermoscope.commands.show.viewer import viewer_page
 from thermoscope.console.options import Case as CaseName, Json, Out
 from thermoscope.console.summary import Summary
 from thermoscope.console.terminal import Progress, give, notes, progress, versions
+from validation.comparison.error_budget import documents
+from validation.parameters.unknowns import strain_words
 from validation.threads import side_by_side
+from viz.data import Comparison, late_mean
 from viz.figures import paper
 from viz.machine.missing import placed
-
-if TYPE_CHECKING:
-    from viz.data import Comparison
 
 FRAMES = 61  # instants of a test that a page can step through
 NO_PDF = "No PDF: WeasyPrint or Chromium prints it; thermoscope check says how to install one."
@@ -58,8 +58,6 @@ def write_page(
 ) -> Path:
     """Write into/report.html with its pictures, drawn anew or those given; `case` is what commands call the case."""
     from thermoscope.case_folder.stored_comparison import yardstick_document
-    from validation.comparison.error_budget import documents
-    from validation.parameters.unknowns import strain_words
     from viz.pages.report import Report, write_report
 
     tell("running the model and its error budget")
@@ -174,7 +172,8 @@ def field_pictures(folder: Folder, into: Path) -> dict[str, Path]:
 
 
 def _recording(folder: Folder, into: Path) -> Path:
-    s, cases = Subject(folder, lambda message: None), every_revision(folder)
+    s, revisions = Subject(folder, lambda message: None), (Revision(0, "calibrate"), *folder.history.revisions)
+    cases = [runs.at_revision(folder, r) for r in revisions]  # with each model of its history, as declared first
     return viz.write_recording(
         into / f"{file_stem(s.test.name)}.rrd",
         s.nodes,
@@ -188,15 +187,8 @@ def _recording(folder: Folder, into: Path) -> Path:
     )
 
 
-def every_revision(folder: Folder) -> list[Case]:
-    """The case with each model of its history, as declared first."""
-    return [runs.at_revision(folder, r) for r in (Revision(0, "calibrate"), *folder.history.revisions)]
-
-
 def residual_at_end(case: Case, test: Test) -> dict[str, float]:
     """Sensor -> measured - modelled (K) over the last fifth of a test, where the machine is warm."""
-    from viz.data import late_mean
-
     model = runs.readings(case, test)
     late = {c.name: late_mean(c.y - model[c.name]) for c in test.channels}
     return {name: K for name, K in late.items() if K is not None}

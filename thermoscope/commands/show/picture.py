@@ -205,10 +205,6 @@ def _odds(s: Subject, png: Path) -> None:
     viz.posterior(diagnosis["explanations"], title=f"{s.folder.case.name}: what the readings say", png=png)
 
 
-def _exploded(s: Subject, png: Path) -> None:
-    viz.exploded(s.nodes, s.field(), title=f"{s.when}: pulled apart", limits=s.limits, png=png).close()
-
-
 def _parts(s: Subject, png: Path, mesh: bool = False) -> None:
     what = "mesh" if mesh else "parts"
     viz.regions(s.nodes, mesh=mesh, title=f"{s.built.machine.name}: its {what}", png=png).close()
@@ -228,7 +224,9 @@ PICTURES: dict[str, Callable[[Subject, Path], Any]] = {
     "difference": _difference,
     "misses": _misses,
     "uncertainty": _uncertainty,
-    "exploded": _exploded,
+    "exploded": lambda s, png: viz.exploded(
+        s.nodes, s.field(), title=f"{s.when}: pulled apart", limits=s.limits, png=png
+    ).close(),
     "parts": _parts,
     "mesh": partial(_parts, mesh=True),
     "flux": _flux,

@@ -16,6 +16,7 @@ from thermoscope.commands.show.pages import provenance
 from thermoscope.console.options import Case, Json
 from thermoscope.console.summary import Summary
 from thermoscope.console.terminal import give, progress
+from validation.tables import currents
 
 MOST = 3  # effects of a diagnosis that are compared: each costs a calibration
 
@@ -34,7 +35,6 @@ def plan(
 ) -> int:
     """A page to pin on the bench: the test to drive next, and the curves that each hypothesis predicts."""
     from validation.revision.predicted_curves import hypotheses, predicted_curves, schedule
-    from validation.tables import currents
     from viz.pages.bench_page import BenchPage, write_bench_page
 
     if out is not None and (out.suffix != ".html" or out.is_dir()):
@@ -46,10 +46,9 @@ def plan(
         curves = predicted_curves(folder.case, models, test)
         file = out or Path("out") / f"{file_stem(folder.case.name)}-plan.html"
         last = folder.case.tests[-1]
-        write_bench_page(
-            BenchPage(folder.case.name, curves, last.name, schedule(curves.test, last), provenance(), hottest(folder)),
-            file,
-        )
+        steps = schedule(curves.test, last)
+        page = BenchPage(folder.case.name, curves, last.name, steps, provenance(), hottest(folder))
+        write_bench_page(page, file)
     levels = [c.document() for c in curves.currents]
     document = {
         "case": folder.case.name,

@@ -19,6 +19,7 @@ from thermoscope.console.terminal import Progress, give, notes, progress
 from thermoscope.files import STOPPED
 from validation.comparison.uncertainty import RULE
 from validation.effects.time_window import IN
+from validation.parameters.unknowns import strain_words
 from validation.tables import comparison_tables, contradiction_table, sensors_table
 
 if TYPE_CHECKING:
@@ -62,12 +63,8 @@ def _stopped(folder: Folder, so_far: Comparison, called: str) -> int:
 
     document = {**so_far.document(), "error_budget": documents(folder.budgets), **sampling(folder)}
     give(document, None, lambda: comparison_summary(document, called))
-    notes(
-        [
-            f"stopped: {len(so_far.tests)} of {len(folder.case.tests)} tests were compared, and the table holds these; "
-            "nothing was written"
-        ]
-    )
+    share = f"{len(so_far.tests)} of {len(folder.case.tests)} tests"
+    notes([f"stopped: {share} were compared, and the table holds these; nothing was written"])
     return STOPPED
 
 
@@ -78,7 +75,6 @@ def compared(
     from thermoscope.bands import bands_requested, test_bands
     from thermoscope.case_folder.stored_comparison import yardstick_document
     from validation.comparison.error_budget import documents
-    from validation.parameters.unknowns import strain_words
 
     tell("checking mesh and condensation" if folder.built else "estimating the error of the time steps")
     budgets = folder.budgets

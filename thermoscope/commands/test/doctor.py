@@ -25,11 +25,8 @@ def doctor(case: Case, target: Json = None) -> int:
     with progress() as tell:
         path = find_case(case)
         wrong, doubts = looked(path, tell)
-    document = {
-        "case": path.resolve().name,
-        "wrong": [f.document() for f in wrong],
-        "doubts": [f.document() for f in doubts],
-    }
+    rows = {name: [f.document() for f in some] for name, some in (("wrong", wrong), ("doubts", doubts))}
+    document = {"case": path.resolve().name, **rows}
     give(document, target, lambda: doctor_summary(wrong, doubts, case))
     return 2 if wrong else 1 if any(not f.remark for f in doubts) else 0
 

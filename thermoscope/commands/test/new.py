@@ -21,6 +21,7 @@ from geom.text import counted
 from lumped.model.quantities import INPUTS, USUAL
 from lumped.model.sites import ASSUMED
 from lumped.schemas.reader import suggestion
+from measured.case import Case, Model as CaseModel
 from measured.importing.aligned import Recording, common, grouped, longest_part, shift
 from measured.importing.aloud import first_lines, short_lines
 from measured.importing.case_files import check_new_folder, folder_whole, read_runs, set_aside, write_case
@@ -40,7 +41,7 @@ from thermoscope.parts import message as missing_extra
 if TYPE_CHECKING:
     from lumped.model.network import Network
     from thermoscope.case_folder.settings import Settings
-    from viz.figures.columns import Panel
+    from viz.figures.curves import Panel
 
 PICTURE = "columns.png"
 LATEST_S = 1e9  # as [test] from_s in a sheet
@@ -128,11 +129,8 @@ def places(words: Sequence[str]) -> dict[str, str]:
     """COLUMN=PLACE of --place; a place has no equals sign in it."""
     for word in words:
         if "=" not in word:
-            raise InputError(
-                f"'{word}' is not of the form COLUMN=PLACE",
-                "--place",
-                "such as T_Wickl_U=winding; PLACE may be an input",
-            )
+            right = "such as T_Wickl_U=winding; PLACE may be an input"
+            raise InputError(f"'{word}' is not of the form COLUMN=PLACE", "--place", right)
     return {column.strip(): place.strip() for column, _, place in (word.rpartition("=") for word in words)}
 
 
@@ -168,11 +166,8 @@ def _machine(machine: str, tell: Progress) -> Model:
 
     network = build(load_machine_file(Path(machine)), progress=tell).network
     if any(source.name == ASSUMED for source in network.sources):
-        raise InputError(
-            "declares no losses: nothing says what heated it in the tests",
-            machine,
-            "[losses.NAME] with kind, at and its numbers",
-        )
+        what = "declares no losses: nothing says what heated it in the tests"
+        raise InputError(what, machine, "[losses.NAME] with kind, at and its numbers")
     return Model(network, target_of(network), _put_machine(Path(machine)))
 
 
@@ -272,7 +267,6 @@ def save_case(folder: Path, model: Model, drafts: list[Draft], tell: Progress) -
 
     drafts : is empty afterwards: a large recording need not be there twice
     """
-    from measured.case import Case, Model as CaseModel
     from measured.recordings.readings import read_test
     from thermoscope.case_folder.doctor import examined
     from thermoscope.case_folder.folder import patient_of
@@ -322,7 +316,7 @@ def save_case(folder: Path, model: Model, drafts: list[Draft], tell: Progress) -
 def _draw(draft: Draft, png: Path) -> None:
     """The columns as a picture, a note where nothing can draw."""
     try:
-        from viz.figures.columns import columns
+        from viz.figures.curves import columns
 
         columns(panels(draft), f"{draft.name}: what each column was taken for", png=png)
     except ModuleNotFoundError as fault:
@@ -371,7 +365,7 @@ def _document(draft: Draft, role: str) -> dict[str, Any]:
 
 def panels(draft: Draft) -> list[Panel]:
     """The columns of numbers of a test as the picture wants them."""
-    from viz.figures.columns import POINTS, Panel
+    from viz.figures.curves import POINTS, Panel
 
     out = []
     for r in draft.records:

@@ -22,6 +22,7 @@ from lumped.integration.balance import Audit, audit
 from lumped.integration.runaway import checked_run
 from lumped.integration.simulate import Record, simulate as integrated
 from lumped.model.network import Network, Row
+from measured.sensors.operators import observe, setting
 from thermoscope.bands import bands_requested, documents, posterior_of, predicted_bands
 from thermoscope.case_folder.cycle import Cycle, find_cycle, load_cycle
 from thermoscope.case_folder.folder import Folder
@@ -32,14 +33,15 @@ from thermoscope.console.options import Case, Json, Out, Sure
 from thermoscope.console.summary import Summary
 from thermoscope.console.terminal import Progress, give, notes, progress
 from validation.bands import Bands, ParameterPosterior
+from validation.comparison.error_budget import error_budgets
+from validation.comparison.predict import record, thermal
+from validation.parameters.unknowns import standing
 
 MISMATCH = 0.01  # of all losses: parabolas miss a hundredth of that; more means that heat went astray
 
 
 def readings(network: Network, folder: Folder, name: str, record: Record, T: Array) -> Array:
     """From the temperatures T (n_time, n_sensor) at the sensors, in the order of `sensors`."""
-    from measured.sensors.operators import observe, setting
-
     if not folder.case.tests:
         return T
     channels = tuple(replace(c, y=np.full(record.time.size, np.nan)) for c in sensors(folder).values())
@@ -72,7 +74,8 @@ def simulate(
     with progress() as tell:
         folder = open_case(case, tell, untested=True)
         network, values = _model(folder)
-        into = out or _out(folder)
+        path = folder.settings.path
+        into = out or (Path("out") / path.name if PACKAGE in path.resolve().parents else folder.settings.out)
         posterior = posterior_of(folder, tell) if bands_requested(network, sure) else None
         runs = [_ran(network, values, one, folder, into, tell, posterior) for one in _cycles(folder, network, cycle)]
         circuits = _circuits(folder)
@@ -81,24 +84,14 @@ def simulate(
     return 0
 
 
-def _out(folder: Folder) -> Path:
-    inside = PACKAGE in folder.settings.path.resolve().parents
-    return Path("out") / folder.settings.path.name if inside else folder.settings.out
-
-
 def _model(folder: Folder) -> tuple[Network, dict[str, float]]:
     """The network with the effects added, and the values of the parameters that act on heat."""
-    from validation.comparison.predict import thermal
-    from validation.parameters.unknowns import standing
-
     network = standing(folder.case)
     mine = {p.name for p in thermal(network).parameters}
     return network, {k: v for k, v in folder.case.model.values.items() if k in mine}
 
 
 def _cycles(folder: Folder, network: Network, cycle: str | None) -> Iterable[Cycle]:
-    from validation.comparison.predict import record
-
     if cycle is None and not folder.case.tests:
         raise InputError("nothing to run", str(folder.settings.path), "--cycle NAME, or [tests.NAME] in case.toml")
     if cycle is None:
@@ -119,9 +112,6 @@ def _ran(
     posterior: ParameterPosterior | None,
 ) -> dict[str, Any]:
     tell(f"running {cycle.name}")
-    from validation.comparison.error_budget import error_budgets
-    from validation.comparison.predict import thermal
-
     network = cycle.on(network)
     rows, record, whole = named_rows(network, folder), cycle.record, network
     network = thermal(network)
