@@ -73,9 +73,8 @@ class Recorded:
         """The recorded inputs of a test; one that was replaced there is as it is there. None on another time axis."""
         if test.time is not self.grid:
             return None
-        unchanged = {name for name, u in test.inputs.items() if self.on_grid.get(name) is u}
-        other = {n: np.interp(self.time, test.time, u) for n, u in test.inputs.items() if n not in unchanged}
-        return other | {n: self.inputs[n] for n in unchanged}
+        each = {n: (u, self.on_grid.get(n) is u) for n, u in test.inputs.items()}  # in the order of the test
+        return {n: self.inputs[n] if same else np.interp(self.time, test.time, u) for n, (u, same) in each.items()}
 
 
 @dataclass(frozen=True)

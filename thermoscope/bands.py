@@ -70,12 +70,15 @@ def _places(rows: Mapping[str, Row]) -> list[Place]:
     return [Place(name, row) for name, row in rows.items()]
 
 
+def full_columns(name: str, values: Mapping[str, Array | float], record: Record) -> dict[str, Array]:
+    """Inputs or boundaries of a record as columns (n_time,), without its clock and the mark of the test of a name."""
+    each = {n: u for n, u in values.items() if n not in (CLOCK, f"{RUNNING}{name}")}
+    return {n: np.broadcast_to(np.asarray(u, float), record.time.shape) for n, u in each.items()}
+
+
 def _test_of(name: str, record: Record) -> Test:
     """A test without sensors, of a record."""
-    nt = record.time.shape
-    inputs = {n: np.broadcast_to(np.asarray(u, float), nt) for n, u in record.inputs.items()}
-    inputs = {n: u for n, u in inputs.items() if n not in (CLOCK, f"{RUNNING}{name}")}
-    air = {n: np.broadcast_to(np.asarray(u, float), nt) for n, u in record.boundaries.items()}
+    inputs, air = full_columns(name, record.inputs, record), full_columns(name, record.boundaries, record)
     # The times, where one is given twice (a jump) a microsecond apart: rates of change are taken of them
     time = record.time + JUMP_S * np.cumsum(np.diff(record.time, prepend=-np.inf) == 0.0)
     source = record.inputs.source if isinstance(record.inputs, Signals) else None

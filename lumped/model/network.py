@@ -11,7 +11,7 @@ parameter does). Every coefficient g and q factorises into an input factor, eval
 whole record, times one temperature law (see laws.py).
 """
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, KeysView, Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
 
@@ -72,9 +72,9 @@ class Network(Structure, TableResult):
         return [*self.links, *self.sources]
 
     @property
-    def inputs(self) -> set[str]:
-        """Names of the signals that the laws read (e.g. "current_A"), with their units in the name."""
-        return {name for item in self.elements for name in item.law.reads}
+    def inputs(self) -> KeysView[str]:
+        """Names of the signals that the laws read (e.g. "current_A"), with their units in the name; the first first."""
+        return dict.fromkeys(name for item in self.elements for name in item.law.reads).keys()
 
     @property
     def heated(self) -> tuple[str, ...]:

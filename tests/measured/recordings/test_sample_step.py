@@ -141,3 +141,11 @@ def test_an_input_that_has_no_finer_steps_is_scaled_too():
     more = Test("swinging", "calibrate", grid, inputs, {}, (), recorded=recorded).scaled({"current_A": 2.0})
     assert more.signals["current_A"] == pytest.approx(2.0 * inputs["current_A"])
     assert more.signals["speed_rpm"] == pytest.approx(inputs["speed_rpm"])
+
+
+def test_what_the_laws_read_has_the_order_of_the_test():
+    """Sums and columns over inputs are the same in every process: no set, which Python shuffles, is between."""
+    grid, fine = np.arange(4.0), np.linspace(0.0, 3.0, 13)
+    inputs = {f"heat_{name}": grid for name in "qwertyuiop"}
+    recorded = Recorded(fine, {name: fine for name in sorted(inputs)}, grid, inputs)
+    assert list(Test("many", "calibrate", grid, inputs, {}, (), recorded=recorded).signals)[:10] == list(inputs)

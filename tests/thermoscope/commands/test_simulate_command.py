@@ -129,6 +129,8 @@ def test_all_tests_of_a_case_give_a_csv_each(case, tmp_path):
         with open(run["file"]) as file:
             head = file.readline().strip().split(",")
         assert head[0] == "time_s"
+        assert head.count("time_s") == 1
+        assert not any(name.startswith("running ") for name in head)  # marks of a test that only laws read
         assert {"current_A", "ambient", "T winding (degC)", "T sensor T_winding (degC)"} <= set(head)
         body = np.loadtxt(run["file"], delimiter=",", skiprows=1)
         assert body.shape[1] == len(head)

@@ -23,7 +23,7 @@ from lumped.integration.runaway import checked_run
 from lumped.integration.simulate import Record, simulate as integrated
 from lumped.model.network import Network, Row
 from measured.sensors.operators import observe, setting
-from thermoscope.bands import bands_requested, documents, posterior_of, predicted_bands
+from thermoscope.bands import bands_requested, documents, full_columns, posterior_of, predicted_bands
 from thermoscope.case_folder.cycle import Cycle, find_cycle, load_cycle
 from thermoscope.case_folder.folder import Folder
 from thermoscope.case_folder.runs import HOT, hot_spots, named_rows, sensors
@@ -133,7 +133,7 @@ def _ran(
     if heat.mismatch > MISMATCH:
         raise ThermoscopeError(f"{cycle.name}: injected and declared losses differ by {100 * heat.mismatch:.3g} %")
     band = None if posterior is None else predicted_bands(posterior, cycle.name, record, rows)
-    file = write_whole(into / f"simulate-{file_stem(cycle.name)}.csv", _csv(record, rows, y, band))
+    file = write_whole(into / f"simulate-{file_stem(cycle.name)}.csv", _csv(cycle.name, record, rows, y, band))
     budget = error_budgets(folder, {cycle.name: record}, tell)[cycle.name]
     document = _document(cycle, record, rows, y, heat, residuals, file)
     if band is not None:
@@ -142,12 +142,12 @@ def _ran(
     return {**document, "error_budget": budget.document()}
 
 
-def _csv(record: Record, rows: Mapping[str, Row], y: Array, band: Bands | None) -> str:
-    inputs = {n: np.broadcast_to(v, record.time.shape) for n, v in {**record.inputs, **record.boundaries}.items()}
-    head = ["time_s", *inputs, *(f"T {name} (degC)" for name in rows)]
+def _csv(name: str, record: Record, rows: Mapping[str, Row], y: Array, band: Bands | None) -> str:
+    inputs = full_columns(name, {**record.inputs, **record.boundaries}, record)
+    head = ["time_s", *inputs, *(f"T {place} (degC)" for place in rows)]
     body = np.column_stack([record.time, *inputs.values(), y])
     if band is not None:
-        head += [f"95 % T {name} (+- K)" for name in rows]
+        head += [f"95 % T {place} (+- K)" for place in rows]
         body = np.column_stack([body, band.half95])
     return csv_lines([head]) + "\n".join(",".join(f"{x:.7g}" for x in line) for line in body) + "\n"
 
