@@ -4,8 +4,6 @@ The priors of a fit and the covariance of the model error are made from this one
 wider one (`Case.doubt`, `widened`). Deviations are one standard deviation of a normal distribution.
 """
 
-from __future__ import annotations
-
 import csv
 from collections.abc import Mapping
 from dataclasses import dataclass

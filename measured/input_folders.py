@@ -1,7 +1,5 @@
 """Where a case keeps its inputs."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 CASE = "case.toml"

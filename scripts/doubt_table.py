@@ -3,8 +3,6 @@
 python -m scripts.doubt_table    prints it
 """
 
-from __future__ import annotations
-
 from measured.doubt import COSTS, PRIOR, RARE, SHAPE, TABLE, TEMPER
 
 

@@ -1,7 +1,5 @@
 """A dimensioned drawing of a machine (SVG): cross-section and section along the axis, from the same profiles."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterator
 from dataclasses import dataclass

@@ -3,8 +3,6 @@
 python -m scripts.family_pages
 """
 
-from __future__ import annotations
-
 from pathlib import Path
 
 from geom.description.geometry import Geometry

@@ -3,8 +3,6 @@
 python -m scripts.keys_page    writes the page
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import Any

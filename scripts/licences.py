@@ -3,8 +3,6 @@
 python scripts/licences.py
 """
 
-from __future__ import annotations
-
 import tomllib
 from importlib.metadata import PackageNotFoundError, metadata, requires
 from pathlib import Path

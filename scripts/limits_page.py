@@ -3,8 +3,6 @@
 python -m scripts.limits_page    writes the page
 """
 
-from __future__ import annotations
-
 from importlib import import_module
 from pathlib import Path
 

@@ -3,8 +3,6 @@
 A figure becomes a picture under docs/images, anything else the text that it prints.
 """
 
-from __future__ import annotations
-
 import ast
 import io
 import json

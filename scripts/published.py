@@ -8,8 +8,6 @@
 The front page and the page of hust-ipmsm take theirs from one run, so they cannot disagree.
 """
 
-from __future__ import annotations
-
 import argparse
 import datetime
 import json

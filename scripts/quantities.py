@@ -3,8 +3,6 @@
 python scripts/quantities.py    writes the page
 """
 
-from __future__ import annotations
-
 from pathlib import Path
 
 from measured.recordings.units import MEMORY_UNIT, QUANTITIES

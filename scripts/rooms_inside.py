@@ -3,8 +3,6 @@
 pyproject.toml says which folder goes where; here the modules' imports follow, and whatever else names a module.
 """
 
-from __future__ import annotations
-
 import ast
 import re
 from collections.abc import Iterator, Sequence

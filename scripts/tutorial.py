@@ -3,8 +3,6 @@
 Commands stand in ```sh blocks; what they print follows in a ```text block. Those that wait for a browser are not run.
 """
 
-from __future__ import annotations
-
 import argparse
 import os
 import re

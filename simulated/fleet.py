@@ -7,8 +7,6 @@ differ in jacket, joint and resistance as production does; in all of them the ja
 fouled much more, in one the joint of stator and housing is loose. No code of the tool is used.
 """
 
-from __future__ import annotations
-
 import argparse
 import shutil
 from dataclasses import dataclass

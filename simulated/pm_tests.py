@@ -3,8 +3,6 @@
 Writes NAME.csv and .toml, the record up to switching off; NAME-cooling.csv, the readings after it; and the truth.
 """
 
-from __future__ import annotations
-
 import argparse
 import sys
 from collections.abc import Sequence

@@ -1,7 +1,5 @@
 """Simulate the five tests of cases/road-test:  python -m simulated.road_test --out DIR [--quick] [--only NAME ...]"""
 
-from __future__ import annotations
-
 import argparse
 import sys
 import time

@@ -1,7 +1,5 @@
 """Bands around what a case's model predicts; what the calibration left unsure is kept by the content of the case."""
 
-from __future__ import annotations
-
 import json
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace

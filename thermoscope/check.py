@@ -1,7 +1,5 @@
 """What this computer lacks, each with the command that fixes it."""
 
-from __future__ import annotations
-
 import os
 import shutil
 import subprocess

@@ -1,7 +1,5 @@
 """The command line. Nothing heavy is loaded until a command runs: the help of the others is read from their files."""
 
-from __future__ import annotations
-
 import gc
 import io
 import os

@@ -1,7 +1,5 @@
 """Files written whole or not at all, one writer at a time, and never over what the user brought."""
 
-from __future__ import annotations
-
 from pathlib import Path
 from tempfile import TemporaryFile
 

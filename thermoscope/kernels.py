@@ -3,8 +3,6 @@
 Loading takes half a second, running two nodes for eight samples next to nothing; all networks share what is compiled.
 """
 
-from __future__ import annotations
-
 import numpy as np
 
 from lumped.integration.balance import balance

@@ -1,7 +1,5 @@
 """The parts of the tool that are installed on demand, and the one message of each where it is missing."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass

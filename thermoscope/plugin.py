@@ -5,8 +5,6 @@
 plugin.pyi lists them with their modules. What is missing there is added there; nothing else of the rooms is promised.
 """
 
-from __future__ import annotations
-
 from pathlib import Path
 
 from geom.lazy import loaded_when_used

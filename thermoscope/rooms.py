@@ -4,8 +4,6 @@ In an installed package they lie inside of it. In a checkout they are folders be
 package are made here, and a file or folder of the user's that Python finds first in place of a room is told.
 """
 
-from __future__ import annotations
-
 import sys
 from collections.abc import Sequence
 from importlib import import_module

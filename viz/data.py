@@ -1,7 +1,5 @@
 """What the pictures are drawn from, besides meshes and result documents."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 

@@ -1,7 +1,5 @@
 """The commands of this extra; none is loaded until it runs."""
 
-from __future__ import annotations
-
 from thermoscope import plugin as th
 
 WORDS = "The published test procedure, from resistances to screened models."

@@ -1,7 +1,5 @@
 """C99 from a model: fixed code (runtime/), the numbers, and the heading of every export: what the model is good for."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path

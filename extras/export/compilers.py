@@ -3,8 +3,6 @@
 gcc or clang serve this computer, zig (a wheel) this and others.
 """
 
-from __future__ import annotations
-
 import ctypes
 import importlib.util
 import platform

@@ -1,7 +1,5 @@
 """A model as data: for JSON, and as structs for MAT files."""
 
-from __future__ import annotations
-
 import io
 from dataclasses import asdict
 from typing import Any

@@ -1,7 +1,5 @@
 """A functional mock-up unit (FMI 2.0 or 3.0, co-simulation) from a model: compiled C and its description."""
 
-from __future__ import annotations
-
 import hashlib
 import io
 import re

@@ -1,7 +1,5 @@
 """What is exported: the network with its multipliers worked in, and what its user must know of inputs and outputs."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 

@@ -3,8 +3,6 @@
 What cannot be is refused: a law of time or of the whole record, one of three inputs at once of unknown form.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, replace
 from functools import singledispatch

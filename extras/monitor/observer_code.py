@@ -1,7 +1,5 @@
 """The observer in C99: the network's code with missing heat as an input, the filter (runtime/), and its numbers."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path

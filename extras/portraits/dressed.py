@@ -1,7 +1,5 @@
 """From a machine to bodies that look like it: every meshed part, and what the mesh leaves out."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 
 import numpy as np

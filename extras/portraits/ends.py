@@ -1,7 +1,5 @@
 """What closes and carries a machine at its ends: end shields with ribs and bolts, bearings with balls, the shaft."""
 
-from __future__ import annotations
-
 import numpy as np
 import shapely
 

@@ -1,7 +1,5 @@
 """Closed surfaces from what they are drawn of: revolved, extruded with rounded edges, swept; balls, boxes and bolts."""
 
-from __future__ import annotations
-
 import numpy as np
 import shapely
 from shapely import Polygon, box as rectangle

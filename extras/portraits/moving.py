@@ -1,7 +1,5 @@
 """The machine as it looks, warming up: slower to draw than viz.machine.animation, for pictures that are kept."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Sequence
 from pathlib import Path
 

@@ -1,7 +1,5 @@
 """What parts look like as they are described: outlines of their prisms, and sections of those that are round."""
 
-from __future__ import annotations
-
 from collections import Counter
 from dataclasses import dataclass
 from functools import cached_property

@@ -1,7 +1,5 @@
 """Pictures of a machine as it looks: thermoscope show picture CASE machine, or temperature instead of machine."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 from thermoscope import plugin as th

@@ -1,7 +1,5 @@
 """Fans with their cowls, and commutators with brushes."""
 
-from __future__ import annotations
-
 import numpy as np
 import shapely
 

@@ -1,7 +1,5 @@
 """What stands around the active parts: housing, feet, base, terminal box, lifting eye, jacket ports."""
 
-from __future__ import annotations
-
 import numpy as np
 import shapely
 

@@ -1,7 +1,5 @@
 """End windings as they are wound: coils that leave one slot and come back in another, or round one tooth or pole."""
 
-from __future__ import annotations
-
 import numpy as np
 from shapely import Polygon, box
 from shapely.affinity import rotate

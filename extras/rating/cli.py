@@ -1,7 +1,5 @@
 """The commands of this extra; none is loaded until it runs."""
 
-from __future__ import annotations
-
 from thermoscope import plugin as th
 
 use_commands = th.CommandGroup("use", f"{__package__}.commands", "rate,optimise,designs.compare-designs")

@@ -3,8 +3,6 @@
 T(load) = limit,   sd of the load = sd of T at the limit / (dT / d load)
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cache

@@ -4,8 +4,6 @@ Heat follows the map at its temperature and grows with the place's temperature a
 network's own law does where there is one slice.
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from itertools import product

@@ -1,7 +1,5 @@
 """What is asked of a rating, and the model and operating point that answer it."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path

@@ -3,8 +3,6 @@
 Surroundings are warmer, higher, with warmer or less coolant.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 from typing import Any

@@ -1,7 +1,5 @@
 """Who may come in, and what they may fetch: this case's pages, and nothing else of this computer."""
 
-from __future__ import annotations
-
 import hmac
 from collections.abc import Mapping
 from dataclasses import dataclass

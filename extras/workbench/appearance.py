@@ -1,7 +1,5 @@
 """One model of a case as a tab sees it: its errors and curves, and the steps that led to it."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from typing import Any

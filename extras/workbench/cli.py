@@ -1,7 +1,5 @@
 """The command of this extra; nothing heavy is loaded until it runs."""
 
-from __future__ import annotations
-
 from typing import Annotated
 
 import typer

@@ -3,8 +3,6 @@
 A run is shown as its journal in the case has it, and "done" is said back to it.
 """
 
-from __future__ import annotations
-
 from pathlib import Path
 from typing import Any
 

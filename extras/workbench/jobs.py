@@ -1,7 +1,5 @@
 """A calculation in a process of its own: it cannot freeze a page, and it can be stopped."""
 
-from __future__ import annotations
-
 import asyncio
 import multiprocessing
 import os

@@ -3,8 +3,6 @@
 Each machine is drawn once, in a process of its own, for every tab that waits for it.
 """
 
-from __future__ import annotations
-
 import asyncio
 from collections.abc import Callable
 from dataclasses import dataclass, field

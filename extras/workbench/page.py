@@ -1,7 +1,5 @@
 """The page of a tab: page.html is its template (Vue and Vuetify). All of it works by keyboard."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from html import escape
 from importlib.resources import files

@@ -1,7 +1,5 @@
 """The server of the workbench: one port, one process, a session per tab."""
 
-from __future__ import annotations
-
 import asyncio
 import os
 import secrets

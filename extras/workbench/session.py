@@ -1,7 +1,5 @@
 """One tab: what it shows, its model's history, and the one calculation it may have running."""
 
-from __future__ import annotations
-
 import asyncio
 import re
 import time

@@ -1,7 +1,5 @@
 """What the page lists, as plain values: errors per test and sensor, steps, candidates."""
 
-from __future__ import annotations
-
 from collections.abc import Collection, Mapping
 from typing import Any
 

@@ -1,7 +1,5 @@
 """One session per tab: made when a browser comes without one, ended when none has been connected for a while."""
 
-from __future__ import annotations
-
 import asyncio
 import base64
 import hashlib

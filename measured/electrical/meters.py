@@ -1,7 +1,5 @@
 """Meters as their data sheets have them: limit of error by range, and which range a reading belongs to."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass
 

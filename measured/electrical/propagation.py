@@ -7,8 +7,6 @@ A data sheet's limit +-a says that every error within it is as likely as another
 Sources: JCGM 100:2008 (4.3.7, 5.1.2) and JCGM 101:2008; first-order arithmetic by the package `uncertainties`.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import product

@@ -6,8 +6,6 @@ Three ways, each with a standard uncertainty:
 - one or two exponentials, by the corrected Akaike criterion (Burnham and Anderson 2002).
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from contextlib import suppress
 from dataclasses import dataclass

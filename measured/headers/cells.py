@@ -1,7 +1,5 @@
 """One cell of a recording: a number with point or comma, an instant, a unit, or on and off."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Sequence
 from datetime import date, datetime, time, timedelta

@@ -1,7 +1,5 @@
 """What the search for a table finds, and the ways to write that nothing was read."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass
 

@@ -1,7 +1,5 @@
 """Where the table begins in rows of cells: preamble, header, units, numbers."""
 
-from __future__ import annotations
-
 import re
 from collections import Counter
 from collections.abc import Iterator, Sequence

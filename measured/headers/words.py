@@ -1,7 +1,5 @@
 """What headers of other people's files usually mean, by the words of vocabulary.toml: a guess, always shown."""
 
-from __future__ import annotations
-
 import re
 import tomllib
 from collections.abc import Mapping

@@ -1,7 +1,5 @@
 """Recorders without a common clock: how far one has to be moved so that the test begins at the same instant in both."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass
 

@@ -1,7 +1,5 @@
 """What the first lines say of a recording: all that was left out though it may matter, and all that is doubted."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Sequence
 from shlex import quote

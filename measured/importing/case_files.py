@@ -1,7 +1,5 @@
 """A case folder from drafts: case.toml, tests/NAME.csv with tests/NAME.toml, all of it or nothing."""
 
-from __future__ import annotations
-
 import os
 import re
 import shutil

@@ -1,7 +1,5 @@
 """The time of a recording, in seconds from its first row, whatever its clock looks like."""
 
-from __future__ import annotations
-
 import itertools
 import re
 from collections.abc import Callable, Sequence

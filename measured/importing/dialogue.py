@@ -1,7 +1,5 @@
 """What a recording cannot tell: asked on the terminal, or taken from --set and from careful defaults."""
 
-from __future__ import annotations
-
 import sys
 from collections.abc import Iterable
 from dataclasses import dataclass, field, replace

@@ -1,7 +1,5 @@
 """A case before it is written: its tests, what was guessed, what is still missing."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path

@@ -1,7 +1,5 @@
 """Tables with a row for every reading of every signal, as databases and control systems write them."""
 
-from __future__ import annotations
-
 import itertools
 import re
 from collections import Counter

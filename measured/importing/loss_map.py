@@ -1,7 +1,5 @@
 """Losses over speed and torque, or over id and iq, as electromagnetic tools write them: tables and MATLAB files."""
 
-from __future__ import annotations
-
 import re
 from collections import Counter
 from collections.abc import Iterator, Mapping

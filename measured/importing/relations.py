@@ -4,8 +4,6 @@ Each sensor has noise that no other has. A column that equals a function of othe
 span of many digits, was therefore computed.
 """
 
-from __future__ import annotations
-
 import itertools
 from collections.abc import Container, Mapping, Sequence
 from functools import partial

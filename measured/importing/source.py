@@ -1,7 +1,5 @@
 """A recording as its file has it: named columns of cells, their units, and where it came from."""
 
-from __future__ import annotations
-
 import itertools
 import re
 import zipfile

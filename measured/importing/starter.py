@@ -3,8 +3,6 @@
 It lets a comparison run on the first day. Its numbers are orders of magnitude with wide priors, and it says so.
 """
 
-from __future__ import annotations
-
 import itertools
 import re
 from collections.abc import Collection, Mapping, Sequence

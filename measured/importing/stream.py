@@ -1,7 +1,5 @@
 """A table that still grows, such as a pipe: found by its first rows as in a file, then read row by row."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from functools import partial
 from itertools import chain, islice

@@ -1,7 +1,5 @@
 """What a model offers to a recording: places for sensors, boundaries and inputs, and which of them a column means."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 

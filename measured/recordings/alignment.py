@@ -1,7 +1,5 @@
 """Two recorders, two clocks: by what both recorded, or by the instant at which something begins to change in each."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from typing import Any
 

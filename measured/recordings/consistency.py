@@ -1,7 +1,5 @@
 """A sheet against itself and against the network: what is said twice, or of something that is not there, is named."""
 
-from __future__ import annotations
-
 import difflib
 from collections.abc import Iterator, Mapping
 

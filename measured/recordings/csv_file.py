@@ -1,7 +1,5 @@
 """CSV files, plain or packed: whole, text, not endless, and a name for every column."""
 
-from __future__ import annotations
-
 import csv
 import gzip
 import io

@@ -13,8 +13,6 @@ after = { file = "m2-cooling.csv", time = "time_s", method = "exponentials", amb
 the record. Without sigma_K the channel's uncertainty is that of the hottest reading, by the GUM.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from pathlib import Path

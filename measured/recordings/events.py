@@ -1,7 +1,5 @@
 """Inputs that are switched, not sampled, such as a fan on and off: instants, and what holds from then on."""
 
-from __future__ import annotations
-
 import itertools
 from dataclasses import dataclass
 from pathlib import Path

@@ -3,8 +3,6 @@
 Channels of several rates share one time column and are empty where they were not sampled.
 """
 
-from __future__ import annotations
-
 import re
 import struct
 import zipfile

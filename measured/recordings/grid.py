@@ -1,7 +1,5 @@
 """Samples onto the analysis grid: averages around each instant, gaps kept as gaps."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from geom.arrays import Array

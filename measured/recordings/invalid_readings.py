@@ -1,7 +1,5 @@
 """What a logger writes where it read nothing: found, left out, and said."""
 
-from __future__ import annotations
-
 import numpy as np
 from numpy.typing import NDArray
 

@@ -1,7 +1,5 @@
 """What a column may measure: its units, and what it is good for."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 

@@ -1,7 +1,5 @@
 """The sheet beside a recording: what each column is. tests/NAME.toml, read key by key."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from math import inf

@@ -1,7 +1,5 @@
 """Recordings into clean arrays: every fault is one message with file, column and line; every doubt is a note."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field, replace
 from pathlib import Path

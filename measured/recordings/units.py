@@ -3,8 +3,6 @@
 Units in the table are known by heart; any other goes to pint, which refuses one of another dimension.
 """
 
-from __future__ import annotations
-
 import re
 from collections.abc import Mapping
 from functools import cache

@@ -1,7 +1,5 @@
 """Samples averaged to a few hundred blocks, one stretch of them after another."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from geom.arrays import Array, Ints

@@ -1,7 +1,5 @@
 """Faults of the measurement that need no model: frozen, clipped and impossible channels."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 

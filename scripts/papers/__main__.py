@@ -1,7 +1,5 @@
 """Write docs/papers: python -m scripts.papers"""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 from scripts.papers import series_dc, thermal_test

@@ -1,7 +1,5 @@
 """Figures of the thermal test paper that are drawings or need the field: 1, 2, 3 and 9."""
 
-from __future__ import annotations
-
 import numpy as np
 from numpy.typing import NDArray
 

@@ -1,7 +1,5 @@
 """The tests of machines: repeats, the two resistances, three bases, two machines that were not used, table II."""
 
-from __future__ import annotations
-
 import tomllib
 from functools import cache
 from pathlib import Path

@@ -1,7 +1,5 @@
 """A page: sections with a table of numbers, a sentence on every difference, and a picture."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any

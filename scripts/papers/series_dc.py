@@ -1,7 +1,5 @@
 """The paper on thermal analysis of series-wound DC motors in electric vehicles."""
 
-from __future__ import annotations
-
 import numpy as np
 from matplotlib.figure import Figure
 

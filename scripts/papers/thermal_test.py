@@ -1,7 +1,5 @@
 """The paper on the thermal test procedure and the calibration of permanent-magnet machines: readings and screening."""
 
-from __future__ import annotations
-
 from functools import cache
 
 import numpy as np

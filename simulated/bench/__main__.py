@@ -3,8 +3,6 @@
 python -m simulated.bench --kind servo --seed 3 --case CASE --truth FILE
 """
 
-from __future__ import annotations
-
 import argparse
 import json
 import socket

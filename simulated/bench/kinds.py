@@ -1,7 +1,5 @@
 """Five kinds of machines as their user would declare them: a network of four or five nodes, a bench, its limits."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path

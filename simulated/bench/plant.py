@@ -1,7 +1,5 @@
 """The true machine: a dozen cells with formulas of their own, its instruments, and an operator who may not obey."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass

@@ -1,7 +1,5 @@
 """The fan's air on its way through the machine: upwind cells without heat capacity."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from itertools import pairwise
 

@@ -1,7 +1,5 @@
 """Heat conduction on a named mesh: linear tetrahedra, every part with nodes of its own, contacts node to node."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import dataclass
 

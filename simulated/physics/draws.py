@@ -1,7 +1,5 @@
 """The truth's random numbers: each belongs to its name, so that no other draw can move it."""
 
-from __future__ import annotations
-
 import zlib
 
 import numpy as np

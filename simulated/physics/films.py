@@ -3,8 +3,6 @@
 T in degC, dT in K, v in m/s, lengths in m. All work element by element.
 """
 
-from __future__ import annotations
-
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 

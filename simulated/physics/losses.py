@@ -1,7 +1,5 @@
 """Losses (W) as functions of current, speed and temperature, with other forms than the library's."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

@@ -1,7 +1,5 @@
 """What the parts are made of in truth: geom's table, moved by draws; contact conductances by kind of joint."""
 
-from __future__ import annotations
-
 import csv
 from collections.abc import Iterable
 from fnmatch import fnmatch

@@ -4,8 +4,6 @@ Film and loss coefficients are taken at an extrapolated temperature; with those,
 that each stage balances to the tolerance of the linear solver.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import dataclass, field
 

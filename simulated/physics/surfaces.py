@@ -1,7 +1,5 @@
 """Which film washes which face, with the drawn multipliers and the hidden road wind."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Readings of the PM machines by meters that err, and the sheet beside each record with the data of these meters."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from typing import Any
 

@@ -1,7 +1,5 @@
 """A permanent-magnet machine in transient: copper and magnetic loss, closed air, a base on a foot."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import Any

@@ -1,7 +1,5 @@
 """What the motor is made to do: an hour on the brake stand, an hour on the road, second by second."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass, replace
 from pathlib import Path
 

@@ -1,7 +1,5 @@
 """The files of a test: NAME.csv as recorded, NAME.toml that says what each column is, and the truth."""
 
-from __future__ import annotations
-
 import csv
 from collections.abc import Mapping, Sequence
 from pathlib import Path

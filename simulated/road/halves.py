@@ -4,8 +4,6 @@ The rotor turns, so each of its slots meets the same air and the same mean beari
 no heat crosses stands for all. It leaves unknowns enough to mesh both finely.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace

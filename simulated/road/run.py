@@ -1,7 +1,5 @@
 """One test: the plant through an hour of drive, and what is to be seen of it."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 

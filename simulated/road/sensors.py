@@ -1,7 +1,5 @@
 """Thermocouples and recorder: where the sensors really sit, how slow they are, and what is written down."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import dataclass
 

@@ -3,8 +3,6 @@
 The file follows the model: it is written anew after every step, and goes when no effect of the model holds for a while.
 """
 
-from __future__ import annotations
-
 import csv
 from collections.abc import Sequence
 from pathlib import Path

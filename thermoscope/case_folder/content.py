@@ -1,7 +1,5 @@
 """What a result of a case depends on, as keys of files that are kept: its tests, its model, and the code."""
 
-from __future__ import annotations
-
 import hashlib
 import inspect
 from collections.abc import Iterable, Iterator

@@ -1,7 +1,5 @@
 """What is probably wrong with recordings, sheets and network before anything is fitted, each with its cure."""
 
-from __future__ import annotations
-
 import warnings
 from collections.abc import Iterator, Mapping
 from itertools import combinations

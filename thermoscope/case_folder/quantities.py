@@ -1,7 +1,5 @@
 """What the inputs of a case measure, and which of several currents or speeds is the machine's own."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Sequence
 from dataclasses import replace
 

@@ -1,7 +1,5 @@
 """What looks wrong in one recording by itself: units, clock, spikes, sensors that stand still or were hardly read."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from dataclasses import dataclass
 from itertools import combinations

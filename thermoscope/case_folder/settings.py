@@ -1,7 +1,5 @@
 """case.toml: which model, which tests in which role, and how the commands go about them."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from fnmatch import fnmatchcase

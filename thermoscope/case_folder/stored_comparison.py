@@ -1,7 +1,5 @@
 """The comparison of a machine's case and its plain models, kept by content: every picture and page asks for them."""
 
-from __future__ import annotations
-
 import json
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass

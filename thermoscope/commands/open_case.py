@@ -1,7 +1,5 @@
 """The case a command is about, and its last diagnosis, kept in its out/ for a report or an added effect."""
 
-from __future__ import annotations
-
 import hashlib
 import json
 import os

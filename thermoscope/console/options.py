@@ -1,7 +1,5 @@
 """Arguments and options that several commands have, and NAME=VALUE on the command line."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from math import inf, nan
 from pathlib import Path

@@ -3,8 +3,6 @@
 Columns that do not fit are left out, the least important first; rows that do not fit are counted.
 """
 
-from __future__ import annotations
-
 import os
 import re
 import shutil

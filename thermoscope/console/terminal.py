@@ -1,7 +1,5 @@
 """What a command shows: progress and notes on stderr, tables or one JSON document on stdout."""
 
-from __future__ import annotations
-
 import json
 import math
 import platform

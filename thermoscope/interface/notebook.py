@@ -1,7 +1,5 @@
 """Who hears what long work is at: whoever was named, else a line with a bar below the cell of a notebook."""
 
-from __future__ import annotations
-
 import sys
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager

@@ -5,8 +5,6 @@ the reader's light or dark theme. (plotly's script alone would be 4.8 MB.) Only 
 more in a frame of its own, needs scripts.
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import partial

@@ -1,7 +1,5 @@
 """The verdict in one sentence, from the result documents."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from typing import Any
 

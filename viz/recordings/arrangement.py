@@ -1,7 +1,5 @@
 """How a recording opens: the machine on the left, curves and residuals beside it; a second tab for the revisions."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

@@ -4,8 +4,6 @@ Two timelines: `test_time` runs through the test, `revision` through the model's
 nothing listens on the network. Open it with `rerun FILE.rrd`.
 """
 
-from __future__ import annotations
-
 import re
 from collections.abc import Mapping, Sequence
 from dataclasses import replace

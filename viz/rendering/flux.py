@@ -1,7 +1,5 @@
 """Heat flux in the solid parts, computed tetrahedron by tetrahedron, and as the viewer's page mixes it at the nodes."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Protocol

@@ -3,8 +3,6 @@
 What is seen is read back from a small picture of part numbers.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from typing import Any
 

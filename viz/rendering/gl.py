@@ -1,7 +1,5 @@
 """Can this computer draw off-screen? Asked in a subprocess: VTK without a GL library dies with a segmentation fault."""
 
-from __future__ import annotations
-
 import os
 import subprocess
 import sys

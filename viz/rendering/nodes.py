@@ -1,7 +1,5 @@
 """From the conformal mesh to one whose parts own their nodes: temperatures jump where a contact resists."""
 
-from __future__ import annotations
-
 from collections.abc import Collection, Mapping
 from dataclasses import dataclass, field, replace
 

@@ -1,7 +1,5 @@
 """The page: mesh once, a few shapes of its temperature, amplitudes per instant; a script that draws them."""
 
-from __future__ import annotations
-
 import json
 import math
 import re

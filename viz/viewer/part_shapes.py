@@ -5,8 +5,6 @@ Arrays are short text: whole numbers, differences of neighbours without a sign, 
 are drawn in the half section, heat along the lines between.
 """
 
-from __future__ import annotations
-
 import base64
 import zlib
 from collections.abc import Mapping, Sequence

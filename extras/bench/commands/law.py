@@ -1,7 +1,5 @@
 """thermoscope bench law TESTS.csv"""
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Annotated, Any

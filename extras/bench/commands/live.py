@@ -1,7 +1,5 @@
 """thermoscope bench live CASE --follow ROWS"""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Mapping
 from typing import Annotated, Any
 

@@ -1,7 +1,5 @@
 """thermoscope bench protocol [RECORD.toml], thermoscope bench report RECORD.toml"""
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Annotated, Any

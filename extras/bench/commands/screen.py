@@ -1,7 +1,5 @@
 """thermoscope bench screen MACHINE, thermoscope bench two-paths CASE, thermoscope bench carry CASE CASE..."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from functools import partial
 from pathlib import Path

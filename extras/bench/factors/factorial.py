@@ -11,8 +11,6 @@ Sobol (Saltelli et al. 2010): shares of the response's variance, alone (S1) and 
 Correlated factors have no shares of their own: put them into one group (Jacques et al. 2006).
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import reduce

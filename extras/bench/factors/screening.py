@@ -1,7 +1,5 @@
 """The published screening: table I's seven factors on a permanent-magnet machine, four responses, transient runs."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any

@@ -1,7 +1,5 @@
 """Whether the run was the duty it is rated for: steady state found in the record, cycles, equivalent load."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import Any

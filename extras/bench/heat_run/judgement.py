@@ -1,7 +1,5 @@
 """The verdict on a heat run: which rise decides, whether the run was its duty, and one sentence."""
 
-from __future__ import annotations
-
 from importlib.metadata import version
 from platform import python_version
 from typing import Any

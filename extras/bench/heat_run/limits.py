@@ -4,8 +4,6 @@ IEC 60034-1, windings that air cools indirectly. Clauses are quoted as deep as t
 numbers of its tables differ between editions and are left out, as is what editions differ in.
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import dataclass
 

@@ -3,8 +3,6 @@
 Beside its own tables it has those of `thermoscope bench protocol`: [cold], [load], [hot], [meters].
 """
 
-from __future__ import annotations
-
 import hashlib
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace

@@ -3,8 +3,6 @@
 theta = (R2 - R1) / R1 (k + t1) + t1 - ta      k = 235 K for copper, 225 K for aluminium (IEC 60034-1, 8.6.2)
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 from typing import Any, Literal

@@ -1,7 +1,5 @@
 """What the rows so far say: the case's own diagnosis by its first odds, and which sensors have stopped."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from warnings import catch_warnings, simplefilter

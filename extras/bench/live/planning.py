@@ -11,8 +11,6 @@ What they would tell of which hypothesis holds is, from pairwise distances D of 
 Source: Kolchinsky and Tracey 2017, Estimating mixture entropy with pairwise distances, Entropy 19, 361.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from itertools import combinations

@@ -1,7 +1,5 @@
 """A run of the bench: rows from the source to the steering, odds worked out beside, set points back."""
 
-from __future__ import annotations
-
 import queue
 import sys
 import threading

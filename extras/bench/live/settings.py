@@ -1,7 +1,5 @@
 """bench.toml of a case: what may be set on the bench, how fast, and what must not be crossed."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import dataclass
 from itertools import product

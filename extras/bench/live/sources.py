@@ -3,8 +3,6 @@
 Every line is a row: cells under the header of the first line, or a JSON object. A set point goes out as one JSON line.
 """
 
-from __future__ import annotations
-
 import asyncio
 import json
 import math

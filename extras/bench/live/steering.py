@@ -1,7 +1,5 @@
 """A run from row to row: guards first, then odds, then the next set point; and when it stops."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field

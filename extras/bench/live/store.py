@@ -1,7 +1,5 @@
 """Rows as they come, on the disk before anything is made of them: a test of the case, and a journal beside it."""
 
-from __future__ import annotations
-
 import fcntl
 import json
 import math

@@ -6,8 +6,6 @@ What the case's network says of other ambients, starts, and loads within 2 % is 
 and time constant as its earlier test has them. Every reading has its sigma anew in every test.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from typing import Any, Literal

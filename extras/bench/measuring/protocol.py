@@ -3,8 +3,6 @@
 A record that would give a wrong temperature is refused, step by step; one that is only incomplete says what comes next.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from typing import Any, Literal

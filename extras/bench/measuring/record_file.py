@@ -1,7 +1,5 @@
 """The record of a thermal test in a file: what was read when, by which meters."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Sequence
 from itertools import pairwise
 from pathlib import Path

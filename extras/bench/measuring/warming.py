@@ -6,8 +6,6 @@ eq. 9   T(t1) - T(t2) = 0 for two late readings, within the sensor's resolution
 Equal tests, and equal machines, are pooled; they repeat where they differ by no more than the measurement is unsure.
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any

@@ -5,8 +5,6 @@ differences. Small and soon made, it serves screening and calibration; the one c
 Films: Churchill and Chu, McAdams; end space: Schubert; slot: a heated bundle, liner and gap in series.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass

@@ -8,8 +8,6 @@ The two come from one steady state; what they leave over is how far they miss ot
 values go to networks of machines that were not used, and are tested there.
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any

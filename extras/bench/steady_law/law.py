@@ -1,7 +1,5 @@
 """One law from a table of steady tests: its numbers with intervals, words, and what it predicts with a band."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import cached_property

@@ -1,7 +1,5 @@
 """Which forms of a law the readings speak for: the evidence of each, from the simplest ones on."""
 
-from __future__ import annotations
-
 from collections import Counter
 from collections.abc import Callable
 from dataclasses import dataclass, replace

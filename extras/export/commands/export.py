@@ -1,7 +1,5 @@
 """thermoscope use export CASE: a workbook of results, or the model itself to run elsewhere."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Annotated, Any

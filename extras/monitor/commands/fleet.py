@@ -1,7 +1,5 @@
 """thermoscope use fleet CASE RECORDINGS...: what differs between motors that should be equal, and which stands out."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from contextlib import nullcontext
 from dataclasses import replace

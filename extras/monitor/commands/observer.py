@@ -1,7 +1,5 @@
 """thermoscope use export CASE --as observer"""
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 

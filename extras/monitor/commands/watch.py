@@ -1,7 +1,5 @@
 """thermoscope use watch CASE --follow FILE|-: temperatures and missing heat while the machine runs."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from contextlib import suppress
 from dataclasses import dataclass, field

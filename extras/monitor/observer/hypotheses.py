@@ -11,8 +11,6 @@ A sensor that only has the bias it may have, of variance v0, is not a fault: its
 forget, so that what was long ago is not evidence now. Odds and temper are those of the diagnosis.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass, field
 
 import numpy as np

@@ -6,8 +6,6 @@ Because heat may be missing, a recording that the model cannot follow moves the 
 and no further. From test to test only w and its covariance are carried. Source: Jazwinski 1970, chapter 8.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass, field
 
 import numpy as np

@@ -8,8 +8,6 @@ boundary that is off by one deviation moves the heat into every body. What that 
 the covariance that the calibration has left, is the covariance of the missing heat.
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 

@@ -1,7 +1,5 @@
 """What an observer is made of: the model as the calibration tests correct it, and how much heat may be missing."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 

@@ -1,7 +1,5 @@
 """The observer: sample by sample all temperatures and the missing heat, dropped sensors, and where the model fails."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 

@@ -7,8 +7,6 @@ x: states (degC), q: missing heat of the bodies (W). The mean goes by a Rosenbro
 heat capacity, shapes and nodes without any at their balance.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 from functools import cached_property, partial

@@ -1,7 +1,5 @@
 """Recordings of a fleet, motor by motor and piece by piece: only their statistics stay in memory."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Iterator, Mapping, Sequence
 from concurrent.futures import Executor

@@ -1,7 +1,5 @@
 """Rows of a recording as they come, under the sheet of one of the case's tests: a file, or a pipe that still grows."""
 
-from __future__ import annotations
-
 import sys
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field

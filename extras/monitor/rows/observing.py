@@ -1,7 +1,5 @@
 """The observer of a case. What the calibration tests teach it is learned once, and kept."""
 
-from __future__ import annotations
-
 import io
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace

@@ -1,7 +1,5 @@
 """thermoscope use compare-designs MACHINE MACHINE ...: what differs, how hot each gets, what each may carry."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path

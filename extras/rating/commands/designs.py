@@ -1,7 +1,5 @@
 """thermoscope use compare-designs MACHINE MACHINE ...: in a script it is `thermoscope.compare_designs`."""
 
-from __future__ import annotations
-
 from pathlib import Path
 from typing import Annotated
 

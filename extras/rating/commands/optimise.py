@@ -1,7 +1,5 @@
 """thermoscope use optimise CASE|MACHINE: designs that trade temperature, settling, loss and auxiliary power."""
 
-from __future__ import annotations
-
 import time
 from collections.abc import Mapping, Sequence
 from contextlib import nullcontext

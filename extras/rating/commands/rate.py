@@ -1,7 +1,5 @@
 """thermoscope use rate CASE|MACHINE: what it may carry, for how long, and how sure that is."""
 
-from __future__ import annotations
-
 import tempfile
 import warnings
 from collections.abc import Callable, Iterator, Mapping, Sequence

@@ -3,8 +3,6 @@
 Both sides of a ratio are of the same mesh, so what is coarse about it cancels to first order.
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from functools import cached_property

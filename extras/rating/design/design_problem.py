@@ -1,7 +1,5 @@
 """What is asked of an optimisation, and the problem that says it: of a case as it stands, or of a machine file."""
 
-from __future__ import annotations
-
 from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any

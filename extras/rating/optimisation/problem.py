@@ -1,7 +1,5 @@
 """One design: its machine, where that comes to rest, what it costs, and by how much it misses a limit."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property

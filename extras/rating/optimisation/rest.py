@@ -6,8 +6,6 @@ Coefficients do not move with x: slopes of tabulated films jump from knot to kno
 shipped machines are off by less than 2 %.
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property

@@ -4,8 +4,6 @@ NSGA-II (Deb et al. 2002) keeps what crowds least; U-NSGA-III (Seada and Deb 201
 directions. Constraints come first in both: of two designs the one that misses its limits by less is better.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Sequence
 from concurrent.futures import Executor
 from dataclasses import dataclass

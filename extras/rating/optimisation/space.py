@@ -8,8 +8,6 @@ They are of rises above the surroundings, of copper loss and of settling time. T
 show that were not learned from.
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 

@@ -1,7 +1,5 @@
 """thermoscope explain answer CASE yes|no"""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Mapping
 from dataclasses import replace

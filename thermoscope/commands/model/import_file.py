@@ -1,7 +1,5 @@
 """thermoscope model import FILE"""
 
-from __future__ import annotations
-
 import tomllib
 from pathlib import Path
 from shlex import quote

@@ -1,7 +1,5 @@
 """A loss map of an electromagnetic tool in a machine's file: its losses as tables over two inputs."""
 
-from __future__ import annotations
-
 import tomllib
 from collections.abc import Mapping
 from dataclasses import replace

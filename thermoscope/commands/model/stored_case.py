@@ -1,7 +1,5 @@
 """Temperatures that a file of another program stores, as the steady test of a case."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path

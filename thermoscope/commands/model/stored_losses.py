@@ -1,7 +1,5 @@
 """Losses that come nearest to the steady temperatures a file stores, and which film or contact would have to differ."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any

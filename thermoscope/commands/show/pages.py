@@ -1,7 +1,5 @@
 """thermoscope show report CASE, thermoscope show render CASE"""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Mapping
 from dataclasses import replace
 from datetime import datetime

@@ -1,7 +1,5 @@
 """thermoscope show plan CASE"""
 
-from __future__ import annotations
-
 from pathlib import Path
 from typing import Annotated
 

@@ -1,7 +1,5 @@
 """thermoscope show viewer CASE"""
 
-from __future__ import annotations
-
 import json
 from collections.abc import Iterator
 from concurrent.futures import ThreadPoolExecutor

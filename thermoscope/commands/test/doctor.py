@@ -1,7 +1,5 @@
 """thermoscope test doctor CASE, thermoscope test quantities"""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from pathlib import Path
 

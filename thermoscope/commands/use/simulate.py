@@ -1,7 +1,5 @@
 """thermoscope use simulate CASE: inputs in, temperatures out."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
