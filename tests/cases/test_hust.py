@@ -12,7 +12,6 @@ from validation.comparison.compare import compare
 from validation.parameters.unknowns import with_model
 from validation.revision.revise import add, calibrate
 
-HELD_OUT = {"id_5", "id_8", "id_11", "id_15"}
 pytestmark = pytest.mark.heavy
 NAMED = ("gap.convection@rotor|stator",)
 
@@ -34,11 +33,6 @@ def example(root):
 def start(folder):
     """The comparison of the model as published."""
     return compare(folder.case)
-
-
-def test_the_held_out_profiles(folder):
-    assert {t.name for t in folder.case.tests if t.role == "hold-out"} == HELD_OUT
-    assert len(folder.case.tests) == 12
 
 
 @pytest.mark.parametrize(("profile", "share"), [(0, 0.05), (14, 0.05), (6, 0.1), (7, 0.1)])

@@ -7,7 +7,7 @@ from named_grids import bar
 from fem.matrices.assembly import assemble
 from fem.matrices.material import isotropic
 from fem.solvers.newton import transient
-from fem.solvers.solve import Fluids, Solver, only_fixed, steady
+from fem.solvers.solve import Solver, only_fixed, steady
 
 GIVEN = 1e9  # stands for a given wall temperature, W/m2/K
 
@@ -61,22 +61,3 @@ def test_prescribed_flux():
     found = steady(Solver(field), {"bar.left": 0.0, "bar.right": 50.0}, {}, load, only_fixed(left=0.0, right=10.0))
     exact = 10 + 100 / 50 + 100 * (0.2 - field.xyz[:, 0]) / 4.0
     assert np.abs(found.T - exact).max() < 1e-9
-
-
-def test_a_stream_warms_while_the_bar_does():
-    """Far into a constant loss the heat that the stream carries away is the loss."""
-    field = assemble(bar(0.02, 4), {"bar": isotropic(50.0)}, {"bar": 3e6})
-    fluids = Fluids(("right",), np.array([[2.0]]), np.array([2.0 * 15.0]), {"left": 0.0})
-    T = transient(
-        Solver(field),
-        {"bar.left": 0.0, "bar.right": 1e5},
-        {},
-        30.0 * field.load("bar"),
-        fluids,
-        np.full(field.n, 15.0),
-        50.0,
-        100,
-    )
-    last = steady(Solver(field), {"bar.left": 0.0, "bar.right": 1e5}, {}, 30.0 * field.load("bar"), fluids)
-    assert last.u[0] == pytest.approx(30.0, abs=1e-9)
-    assert T[-1] == pytest.approx(last.T, abs=1e-6)

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from fem.matrices.assembly import assemble
-from fem.matrices.bends import Bends, edge_table
+from fem.matrices.bends import Bends
 from fem.matrices.grids import box
 from fem.matrices.material import isotropic
 from fem.solvers.bending_edges import linear_losses
@@ -48,29 +48,6 @@ def test_middles_along_the_heat_do_what_all_of_them_do(cells):
 def test_middles_across_the_heat_do_nothing():
     """Nothing bends there; films of 1e9 W/m2/K let the skin move by less than 1e-6 K."""
     assert mean(slab(2, along(1.0))) == pytest.approx(mean(slab(2, None)), abs=1e-6)
-
-
-def test_without_any_middle_a_part_is_linear():
-    none = Bends({"slab": np.column_stack([along(0.0).parts["slab"][:, :6], np.zeros(len(along(0.0).parts["slab"]))])})
-    assert abs(slab(2, none).block("slab").K - slab(2, None).block("slab").K).max() == 0.0
-
-
-def test_edges_of_thin_layers_take_after_those_of_their_direction():
-    """A liner of 0.3 mm with points 10 mm apart: the nearest edge across it is further off than those of its skin."""
-    x, y = np.meshgrid(np.arange(0.0, 0.1, 0.01), [0.0, 0.0003])
-    skin, other = np.column_stack([x.ravel(), y.ravel(), 0.0 * x.ravel()]), np.array([0.01, 0.0, 0.0])
-    across = skin[y.ravel() == 0.0]
-    edges = [(skin, skin + other, 0.0), (across, across + np.array([0.0, 0.0003, 0.0]), 1.0)]
-    table = np.vstack([np.column_stack([edge_table(a, b), np.full(len(a), bent)]) for a, b, bent in edges])
-    bent = Bends({"liner": table}).of("liner")
-    half = across + np.array([0.005, 0.0, 0.0])
-    assert bent(half, half + np.array([0.0, 0.00015, 0.0])).all()
-    assert not bent(skin, skin + 0.5 * other).any()
-
-
-def test_what_is_equal_by_content_is_one():
-    assert along(0.0) == along(0.0)
-    assert len({along(0.0), along(0.0), along(1.0), None}) == 3
 
 
 def test_a_straight_edge_loses_nothing_where_the_heat_goes_across_it():

@@ -7,7 +7,6 @@ from fem.matrices.assembly import assemble
 from fem.matrices.grids import ring
 from fem.matrices.material import isotropic, laminated
 from fem.solvers.local import local_solutions, of_unit_energy
-from fem.solvers.snapshots import Recipe, bases, energies, isolated_part, principals, random_coefficients, snapshots
 from fem.solvers.solve import Solver
 
 CONTACTS = {"core|yoke": 500.0}
@@ -48,26 +47,3 @@ def test_every_field_of_own_loads_has_unit_energy(field, films):
     faces = [face for face, film in field.films.items() if film.trace.part == "yoke"]
     assert found.shape[1] == 1 + len(faces)
     assert np.einsum("ij,ij->j", found, K[dofs][:, dofs] @ found) == pytest.approx(1.0, rel=1e-9)
-
-
-def missed(field, films, recipe):
-    """Largest share of a field that 40 states of the recipe cannot show at unseen coefficients."""
-    loads, energy = np.column_stack([field.load("core"), field.load("yoke")]), energies(field, films, CONTACTS)
-    S = snapshots(field, films, CONTACTS, loads, recipe)
-    found = principals(field, S, energy, isolated_part(field, films, CONTACTS, S, loads, recipe))
-    shapes = bases(field, found, energy, Recipe(tolerance=0.0, max_states=40))
-    rng, worst = np.random.default_rng(5), 0.0
-    for _ in range(4):
-        K = field.stiffness(random_coefficients(films, 5.0, rng), random_coefficients(CONTACTS, 5.0, rng))
-        X = Solver(field).factor(K)(loads)
-        for name, block in field.blocks.items():
-            Q = np.linalg.qr(shapes[name].V)[0]
-            T = X[block.dofs]
-            off = T - Q @ (Q.T @ T)
-            worst = max(worst, float(np.abs(off).max() / np.abs(T - T.mean(0)).max()))
-    return worst
-
-
-def test_parts_alone_prepare_for_coefficients_nobody_has_solved_for(field, films):
-    few = Recipe(shifts=(), random_points=1)
-    assert missed(field, films, Recipe(shifts=(), random_points=1, local_points=4)) < 0.5 * missed(field, films, few)

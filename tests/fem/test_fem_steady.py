@@ -8,9 +8,8 @@ from skfem import Basis, BilinearForm, ElementTetP1, MeshTet
 from skfem.helpers import dot, grad
 
 from fem.matrices.assembly import assemble
-from fem.matrices.grids import box, cylinder, ring, sector
+from fem.matrices.grids import box, cylinder, ring
 from fem.matrices.material import Conductivity, isotropic, laminated
-from fem.solvers import solve
 from fem.solvers.multifrontal import analyse, factorise
 from fem.solvers.solve import Fluids, Iterative, Solver, only_fixed, steady
 from geom.errors import InputError
@@ -108,24 +107,6 @@ def test_orthotropic_annulus_converges_to_closed_form():
     assert fine < 2e-3
 
 
-def test_annular_sector_resistance():
-    """Heat that runs around a sector: R = alpha / (k L ln(ro / ri))."""
-    r, theta = np.geomspace(0.05, 0.1, 13), np.linspace(0.0, 1.0, 33)
-    mesh = sector(
-        r,
-        theta,
-        np.array([0.0, 0.02]),
-        lambda c: named(c, default="s"),
-        lambda c: named(c, (c[:, 1] < 1e-6, "hot"), (c[:, 1] > 1 - 1e-6, "cold")),
-    )
-    field = assemble(mesh, {"s": isotropic(10.0)}, {"s": 1.0})
-    h = 1e9  # stands for a given temperature
-    found = steady(Solver(field), {"s.hot": h, "s.cold": h}, {}, np.zeros(field.n), only_fixed(hot=1.0, cold=0.0))
-    trace = field.films["s.cold"].trace
-    watts = h * float(trace.b @ found.T[trace.dofs])
-    assert 1.0 / watts == pytest.approx(1.0 / (10.0 * 0.02 * np.log(2.0)), rel=2e-3)
-
-
 def nafems_t4(n):
     x, y = np.linspace(0.0, 0.6, 3 * n + 1), np.linspace(0.0, 1.0, 5 * n + 1)
     mesh = box(
@@ -219,36 +200,6 @@ def test_multifrontal_solves_what_was_asked():
     K = field.stiffness(dict.fromkeys(field.films, 5.0), {"core|yoke": 100.0})
     x = np.random.default_rng(3).normal(size=(field.n, 7))
     assert factorise(K, analyse(K, field.xyz))(K @ x) == pytest.approx(x, abs=1e-9)
-
-
-def test_factors_one_after_the_other_share_their_memory():
-    field = rings()
-    solver, load = Solver(field), field.load("core")
-    soft, stiff = (field.stiffness(dict.fromkeys(field.films, h), {"core|yoke": 100.0}) for h in (5.0, 50.0))
-    alone = [solver.factor(K)(load) for K in (soft, stiff)]
-    places = []
-
-    def solved(factor, K):
-        inverse = factor(K)
-        places.append(inverse.pivots[-1].ctypes.data)
-        return inverse(load)
-
-    assert np.array_equal(solver.each(solved, [soft, stiff]), alone)
-    assert places[0] == places[1]
-    first, beside = solver.factor(soft), solver.factor(stiff)
-    assert not np.shares_memory(first.pivots[-1], beside.pivots[-1])
-
-
-def test_solvers_of_one_field_analyse_it_once(monkeypatch):
-    seen = []
-    monkeypatch.setattr(solve, "analyse", lambda *given: seen.append(given) or analyse(*given))
-    field = assemble(cube(2), {"cube": isotropic(2.0)}, {"cube": 1e6})
-    K = field.stiffness(dict.fromkeys(field.films, 1.0), {})
-    for _ in range(2):
-        T = Solver(field).factor(K, 1.0)(np.ones(field.n))
-        assert np.abs((K + field.M) @ T - 1.0).max() < 1e-9
-    assert len(seen) == 1
-    assert Solver(assemble(cube(2), {"cube": isotropic(2.0)}, {"cube": 1e6})).symbolic is not Solver(field).symbolic
 
 
 def test_a_part_that_hangs_in_the_air_is_refused():

@@ -56,15 +56,6 @@ def test_what_a_killed_process_had_taken_is_done_by_the_other():
     assert in_two_processes(killed, range(50), MANY) == [k * k for k in range(50)]
 
 
-@forks
-def test_an_error_is_that_of_one_process():
-    def fails(k):
-        raise ValueError(f"item {k}")
-
-    with pytest.raises(ValueError, match="item"):
-        in_two_processes(fails, range(5), MANY)
-
-
 @pytest.mark.parametrize("why", ["memory", "core", "small"])
 def test_one_process_where_two_are_no_use(monkeypatch, why):
     if why == "memory":

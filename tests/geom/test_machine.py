@@ -17,24 +17,16 @@ def like(name="series-dc-100kw", **header):
 WRONG = {
     "like no machine that comes along": (like("steam"), ["like", "'steam'", "series-dc-100kw"]),
     "without what is not there": (like(without=["fans", "contacts.wheel"]), ["without", "'contacts.wheel'"]),
-    "without no key": (like(without=["a = 1\nb"]), ["without", "such as"]),
     "a key nobody knows": (series(rotor={"slot_count": 46}), ["slot_count", "slots", "[geometry.rotor]"]),
-    "a unit forgotten": (series(housing={"fin_height": 18}), ["fin_height", "unit", "fin_height_mm"]),
     "another unit": (series(housing={"fin_height_cm": 1.8}), ["fin_height_cm", "fin_height_mm"]),
     "a group nobody knows": (series(rotr={}), ["geometry.rotr", "rotor"]),
-    "a section nobody knows": ({"machnie": {}}, ["machnie", "machine"]),
     "a family nobody knows": ({"machine": {"family": "steam"}}, ["steam", "series-dc"]),
-    "no family": ({"machine": {}}, ["family", "series-dc"]),
     "a part nobody knows": (series() | {"materials": {"wheel": "steel"}}, ["wheel", "[materials]", "shaft"]),
     "a material nobody knows": (series() | {"materials": {"shaft": "cheese"}}, ["cheese", "steel"]),
     "text for a number": (series(rotor={"liner_mm": "thin"}), ["liner_mm", "thin", "0.05", "3"]),
-    "true for a number": (series(rotor={"slots": True}), ["slots", "True"]),
     "half a slot": (series(rotor={"slots": 46.5}), ["slots", "46.5", "integer"]),
-    "not a number": (series(rotor={"liner_mm": float("nan")}), ["liner_mm", "nan"]),
-    "no air gap": (series(stator={"air_gap_mm": 0.0}), ["air_gap_mm", "0.0", "0.3"]),
     "a negative air gap": (series(stator={"air_gap_mm": -1.0}), ["air_gap_mm", "-1.0", "0.3"]),
     "fins that overlap": (series(housing={"fins": 200, "fin_thickness_mm": 9.0}), ["fin_thickness_mm", "overlap"]),
-    "slots wider than their pitch": (series(rotor={"slot_width_mm": 16.0}), ["slot_width_mm", "16", "pitch"]),
     "a liner thicker than the slot": (
         series(rotor={"slot_width_mm": 4.0, "liner_mm": 2.5}),
         ["liner_mm", "2.5", "less than 1.6"],
@@ -44,8 +36,6 @@ WRONG = {
         series(field={"coil_height_mm": 40.0}, stator={"yoke_inner_diameter_mm": 408.0}),
         ["yoke_inner_diameter_mm", "field coils"],
     ),
-    "coils that meet": (series(field={"coil_width_mm": 200.0}), ["coil_width_mm"]),
-    "a machine too short": (series(shaft={"length_mm": 400.0}), ["length_mm", "400"]),
     "a base narrower than the feet": (series(base={"width_mm": 200.0}), ["base", "width_mm"]),
     "larger than its envelope": (
         series() | {"ratings": {"envelope_mm": [440, 500, 1155]}},
@@ -66,22 +56,8 @@ def test_wrong_input_is_one_message_with_place_value_and_range(case):
         assert word in message
 
 
-@pytest.mark.parametrize("content", ["[machine", "\xff\xfe"])
-def test_broken_toml_is_an_input_error(tmp_path, content):
-    path = tmp_path / "broken.toml"
-    path.write_bytes(content.encode("latin-1"))
-    with pytest.raises(InputError, match=r"broken\.toml"):
-        load_machine(path)
-
-
-def test_missing_machine_lists_the_library():
-    with pytest.raises(InputError, match="series-dc-100kw"):
-        load_machine("series-dc-1000kw")
-
-
-@pytest.mark.parametrize("name", library())
-def test_library_machine_loads_and_carries_its_name(name):
-    assert load_machine(name).name == name
+def test_library_machines_load_and_carry_their_names():
+    assert [load_machine(name).name for name in library()] == list(library())
 
 
 def test_a_file_may_say_only_what_differs_from_a_machine_of_the_library():

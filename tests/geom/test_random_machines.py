@@ -7,7 +7,7 @@ import pytest
 import shapely
 from hypothesis import HealthCheck, assume, given, settings, strategies as st
 
-from geom import InputError, check_cad
+from geom import InputError
 from geom.description.profile import ArcGrid
 from geom.machine_file import families, machine_from
 from geom.meshing.partition import filled, partition
@@ -61,18 +61,18 @@ def built_or_refused(family, values):
 
 
 @FAMILIES
-@quick(max_examples=40)  # benchmarks/families.py draws a thousand of each
+@quick(max_examples=20)  # benchmarks/families.py draws a thousand of each
 @given(data=st.data())
 def test_random_machines_fit_together(family, data):
     machine, refusal = built_or_refused(family, data.draw(geometry(family)))
     assert machine or ("random.toml [geometry." in refusal and "must be" in refusal)
-    assume(machine)  # forty that fit are wanted
+    assume(machine)  # twenty that fit are wanted
     cut = filled(partition((*machine.parts, *machine.fluids), 40))  # 24 chords cut into what clears by 0.5 %
     assert set(range(len(machine.parts))) <= set(cut.labels.ravel().tolist())
 
 
-@pytest.mark.parametrize("name", ["pmsm", "tefc", "cross-section"])
-@quick(max_examples=20)
+@pytest.mark.parametrize("name", ["pmsm", "cross-section"])
+@quick(max_examples=10)
 @given(data=st.data())
 def test_random_hairpin_machines_fit_together(name, data):
     family = families()[name]
@@ -98,12 +98,6 @@ HAIRPIN_FAULTS = {
         "to leave teeth",
     ),
     "bars wider than the slot": ({"winding.bar_width_mm": 60.0}, "bar_width_mm", "between the liners"),
-    "more layers than the slot holds": (
-        {"winding.layers": 9, "winding.bar_height_mm": 3.0},
-        "bar_height_mm",
-        "9 layers",
-    ),
-    "enamel thicker than the room": ({"winding.enamel_mm": 1.0}, "enamel_mm", "at most"),
     "end turns that cut each other": ({"winding.end_mm": 2.0, "winding.pitch_deg": 170.0}, "end_mm", "cut each other"),
 }
 
@@ -126,18 +120,6 @@ def test_hairpins_that_do_not_fit_are_one_message(fault):
     assert "\n" not in str(caught.value)
 
 
-@FAMILIES
-@quick(max_examples=2)
-@given(data=st.data())
-def test_random_machines_have_watertight_solids_of_the_right_volume(family, data):
-    machine, _ = built_or_refused(family, data.draw(geometry(family)))
-    assume(machine)
-    for check in check_cad(machine, 0.2):
-        assert check.watertight, check.part
-        exact = 0.02 if machine.part(check.part).cad_shape else 1e-6  # round ports for square ones
-        assert check.solid_volume == pytest.approx(check.volume, rel=exact), check.part
-
-
 def out_of_range(parameter):
     if parameter.choices:
         return st.text(max_size=8).filter(lambda word: word not in parameter.choices)
@@ -146,7 +128,7 @@ def out_of_range(parameter):
 
 
 @FAMILIES
-@quick(max_examples=100)
+@quick(max_examples=40)
 @given(data=st.data())
 def test_random_invalid_values_are_refused_with_key_value_and_range(family, data):
     parameter = data.draw(st.sampled_from(family.parameters))
@@ -159,9 +141,7 @@ def test_random_invalid_values_are_refused_with_key_value_and_range(family, data
     assert "\n" not in message
 
 
-@pytest.mark.parametrize(
-    ("poles", "arc", "rounded"), [(4, 0.65, False), (4, 0.85, True), (2, 0.6, True), (2, 0.75, True)]
-)
+@pytest.mark.parametrize(("poles", "arc", "rounded"), [(4, 0.65, False), (2, 0.75, True)])
 def test_no_shoe_cuts_the_face_of_its_pole(poles, arc, rounded):
     """A straight back from the tips of a wide shoe to a slender body would pass nearer to the axis than the face."""
     stator = {"stator.poles": poles, "stator.pole_arc": arc, "stator.tip_mm": 3.0, "stator.body_width_mm": 60.0}

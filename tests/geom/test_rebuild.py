@@ -4,11 +4,9 @@ from dataclasses import replace
 
 import pytest
 
-from geom import build_mesh, check_cad, export_cad
+from geom import check_cad, export_cad
 from geom.machine_file import machine_from
 from geom.solids.cad import solids
-
-TINY = {"size_m": 0.2, "segments": 24, "across": 1}
 
 
 @pytest.fixture
@@ -19,17 +17,6 @@ def built(monkeypatch):
     names, build = [], cad._built
     monkeypatch.setattr("geom.solids.cad._built", lambda part: names.append(part.name) or build(part))
     return names
-
-
-@pytest.fixture
-def planned(monkeypatch):
-    """How often the plane is partitioned."""
-    from geom.meshing import mesher
-
-    counted, partition = [], mesher.partition
-    mesher._planned.cache_clear()
-    monkeypatch.setattr("geom.meshing.mesher.partition", lambda *a: counted.append(1) or partition(*a))
-    return counted
 
 
 def tefc(materials=None, **geometry):
@@ -55,25 +42,6 @@ def test_changed_parameter_rebuilds_only_what_depends_on_it(filled_cache, built)
     for part in tefc(housing={"fins": 38}).parts:
         solids(part, filled_cache)
     assert built == ["housing"]
-
-
-def test_changed_material_rebuilds_nothing(filled_cache, built, planned, tmp_path):
-    other = tefc(materials={"housing": "steel"})
-    for part in other.parts:
-        solids(part, filled_cache)
-    build_mesh(tefc(), **TINY, cache=tmp_path)
-    planned.clear()
-    build_mesh(other, **TINY, cache=tmp_path)
-    assert built == []
-    assert planned == []
-
-
-def test_refining_builds_no_solids_and_partitions_once(built, planned):
-    machine = tefc()
-    build_mesh(machine, **TINY)
-    build_mesh(machine, **{**TINY, "size_m": 0.1})
-    assert built == []
-    assert len(planned) == 1
 
 
 def test_kept_solids_are_the_same(filled_cache):

@@ -64,18 +64,6 @@ def test_composite_wall_with_contact(wall):
     assert 20.0 * (face.areas @ (T[face.nodes] - 10.0)) == pytest.approx(flux * 0.01, rel=1e-9)
 
 
-def test_step_across_the_contact(wall):
-    T = steady(wall, {"a.hot": (1000.0, 100.0), "b.cold": (20.0, 10.0)}, np.zeros(len(wall.points)))
-    at = np.isclose(wall.points[:, 0], 0.02)
-    step = T[at & (wall.part == 0)].mean() - T[at & (wall.part == 1)].mean()
-    flux = 90 / (1 / 1000 + 0.02 / 50 + 1 / 500 + 0.03 / 0.25 + 1 / 20)
-    assert step == pytest.approx(flux / 500, rel=1e-9)
-
-
-def test_capacity_is_volume_times_heat_capacity(wall):
-    assert wall.capacity.sum() == pytest.approx(0.01 * (0.02 * 3.7e6 + 0.03 * 2e6), rel=1e-12)
-
-
 def cylinder_error(n):
     # A quarter of a hollow cylinder, 20 to 60 mm, 50 mm long: a bent grid of bricks
     axes = (np.linspace(0.02, 0.06, n + 1), np.linspace(0, np.pi / 2, 2 * n + 1), np.linspace(0, 0.05, 3))

@@ -24,11 +24,9 @@ from foreign_machines import (
     whole,
 )
 
-import thermoscope as ts
 from geom import InputError, import_draft, load_machine
-from geom.importing.dxf import KINDS, USUAL_FILL, kind_of
+from geom.importing.dxf import USUAL_FILL
 from geom.machine_file import machine_from
-from thermoscope.commands.model.import_file import import_
 
 STACK = 50.0
 ROUND = {"stator": "Ständerblech", "winding": "Kupfer", "rotor": "Läufer", "slot": "Nut", "magnet": "Magnete"}
@@ -111,7 +109,8 @@ WAYS = {
 
 @pytest.mark.parametrize("way", WAYS)
 def test_areas_are_those_of_closed_forms(way, tmp_path):
-    sizes = areas(draft_of(WAYS[way](), tmp_path))
+    draft = draft_of(WAYS[way](), tmp_path)
+    sizes = areas(draft)
     lid = BORE**2 * math.asin(OPENING / 2 / BORE) - OPENING / 2 * math.sqrt(BORE**2 - OPENING**2 / 4)
     to_bore = OPENING * (TIP - math.sqrt(BORE**2 - OPENING**2 / 4)) - lid  # of the opening, beyond the bore's circle
     slot = to_bore + WIDE * (DEEP - TIP)
@@ -119,13 +118,7 @@ def test_areas_are_those_of_closed_forms(way, tmp_path):
     assert sizes["stator.core"] == pytest.approx(math.pi * (OUTER**2 - BORE**2) - SLOTS * slot, rel=1e-8)
     assert sizes["magnets"] == pytest.approx(POLES * magnet, rel=1e-8)
     assert sizes["rotor.core"] == pytest.approx(math.pi * (SURFACE**2 - SHAFT**2) - POLES * magnet, rel=1e-8)
-
-
-@pytest.mark.parametrize("way", WAYS)
-def test_copper_is_that_of_the_winding(way, tmp_path):
-    """40 % of what is drawn, wherever the slot has room beside it."""
-    draft = draft_of(WAYS[way](), tmp_path)
-    copper = areas(draft)["winding"] * draft.value("geometry.winding", "fill")
+    copper = sizes["winding"] * draft.value("geometry.winding", "fill")  # 40 % of what is drawn, wherever that is
     assert copper == pytest.approx(USUAL_FILL * SLOTS * (DEEP - 0.25 - TIP - 1) * (WIDE - 0.5), rel=1e-5)
 
 
@@ -193,26 +186,6 @@ def test_ring_magnet_and_housing(tmp_path):
     assert draft.value("geometry.housing", "thickness_mm") == pytest.approx(6.0)
 
 
-@pytest.mark.parametrize(
-    ("layer", "kind"),
-    [
-        ("Statorblech", "stator"),
-        ("ROTOR_CORE", "rotor"),
-        ("Nutisolation", "liner"),
-        ("stator_slots", "slot"),
-        ("Nut_Wicklung", "winding"),
-        ("bobinage", "winding"),
-        ("Magnettasche", "pocket"),
-        ("rotor shaft", "shaft"),
-        ("Gehäuse", "housing"),
-        ("Defpoints", ""),
-    ],
-)
-def test_layers_by_their_names(layer, kind):
-    assert kind_of(layer) == kind
-    assert kind in ("", *KINDS)
-
-
 def without(layer):
     sheet = whole()
     for entity in list(sheet.space.query(f'*[layer=="{layer}"]')):
@@ -233,17 +206,9 @@ def odd_sector():
     return sheet
 
 
-def wide_winding():
-    sheet = Sheet()
-    stator(sheet, 1, winding=box(TIP + 1, DEEP + 2, WIDE + 1))
-    rotor(sheet, 1)
-    return sheet
-
-
 WRONG = {
     "no length": (whole, {"stack_mm": None}, "how long the stack is; --stack-mm"),
     "no units": (lambda: whole(insunits=0), {}, r"does not say its units.*--units, one of: mm"),
-    "a foreign unit": (lambda: whole(insunits=0), {"units": "furlong"}, "'furlong' is not a unit"),
     "layers of other names": (
         lambda: whole(names={"stator": "A1"}),
         {},
@@ -252,8 +217,6 @@ WRONG = {
     "no winding": (lambda: without("winding"), {}, "no layer is of the winding"),
     "an open outline": (open_slot, {}, r"layer stator: an outline is open at x = 60, y = -?3 mm"),
     "a part of a turn": (odd_sector, {}, "spans 57.296 degrees"),
-    "a winding beyond the slot": (wide_winding, {}, "windings take .* % of the slots"),
-    "another template": (whole, {"family_template": "barrel"}, "not a template"),
 }
 
 
@@ -264,7 +227,7 @@ def test_faults_are_one_message(fault, tmp_path):
         draft_of(sheet(), tmp_path, **answers)
 
 
-@pytest.mark.parametrize("content", [b"hello", b"\0\1\2" * 99, None])
+@pytest.mark.parametrize("content", [b"hello", None])
 def test_damaged_files_are_one_message(content, tmp_path):
     path = whole().saved(tmp_path)
     text = path.read_bytes()
@@ -290,26 +253,3 @@ def test_texts_of_a_drawing_answer(tmp_path):
     machine = load_machine(sheet.saved(tmp_path))
     core = next(part for part in machine.parts if part.name == "stator.core")
     assert core.span[1] - core.span[0] == pytest.approx(0.12)
-
-
-def test_the_command_writes_a_file_that_builds_the_same(tmp_path, capsys):
-    path = pitches(1, 1).saved(tmp_path)
-    assert import_(path, tmp_path / "out", stack_mm=STACK) == 0
-    assert "values assumed" in capsys.readouterr().out
-    assert areas(import_draft(path, stack_mm=STACK)) == pytest.approx(
-        {
-            part.name: 1e6 * sum(profile.area for profile, *_ in part.prisms)
-            for part in load_machine(tmp_path / "out/drawn.toml").parts
-        }
-    )
-
-
-def test_scripts_say_what_a_drawing_lacks(tmp_path):
-    with pytest.raises(InputError, match="stack_mm = 120 in the drawing"):
-        ts.build(whole().saved(tmp_path))
-
-
-def test_other_files_know_their_length(tmp_path):
-    (tmp_path / "machine.json").write_text("{}")
-    with pytest.raises(InputError, match="for drawings"):
-        import_draft(tmp_path / "machine.json", stack_mm=STACK)

@@ -41,7 +41,7 @@ def test_solids_are_refused(tmp_path, kind):
     refused(tmp_path, tmp_path / "m.step")
 
 
-@pytest.mark.parametrize("target", ["m.toml", "/etc/hostname", "/dev/zero", "folder"])
+@pytest.mark.parametrize("target", ["m.toml", "/dev/zero", "folder"])
 def test_a_link_is_followed_to_a_file_alone(tmp_path, target):
     (tmp_path / "folder").mkdir()
     (tmp_path / "m.toml").symlink_to(target)
@@ -53,7 +53,7 @@ def test_a_pipe_is_no_machine_file(tmp_path):
     refused(tmp_path, tmp_path / "m.toml")
 
 
-@pytest.mark.parametrize("kind", ["comment of C", "folder above", "folder of the system"])
+@pytest.mark.parametrize("kind", ["comment of C", "folder above"])
 def test_a_foreign_name_becomes_one_of_a_file_in_its_folder(tmp_path, kind):
     source = saved(tmp_path, pyleecan(name=NAMES[kind]), "m.json")
     assert answered("import", source, "--out", tmp_path / "out", cwd=tmp_path).code == 0

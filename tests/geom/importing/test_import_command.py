@@ -5,7 +5,6 @@ import json
 import pytest
 from foreign_machines import pyleecan, saved
 
-import thermoscope as ts
 from geom import load_machine
 from geom.errors import InputError
 from thermoscope.commands.model.import_file import import_
@@ -42,12 +41,3 @@ def test_a_file_that_lies_there_stays(tmp_path):
     with pytest.raises(InputError, match="it stays"):
         import_(source, tmp_path)
     assert (tmp_path / "small.toml").read_text() == "mine"
-
-
-def test_scripts_build_it(tmp_path, monkeypatch):
-    seen = []
-    monkeypatch.setattr(
-        "thermoscope.commands.model.build.built_from", lambda machine, *rest: (seen.append(machine), None)
-    )
-    ts.build(saved(tmp_path, pyleecan()))
-    assert seen[0].name == "small"

@@ -170,7 +170,6 @@ def test_a_map_over_currents_follows_the_speed(tmp_path):
     ("more", "options", "expected"),
     [
         ({}, {}, 20.0),
-        ({}, {"copper_degC": 120.0}, 120.0),
         ({"Winding_Temperature": 90.0}, {}, 90.0),
         ({"Winding_Temperature": 90.0}, {"copper_degC": 120.0}, 120.0),
     ],
@@ -183,17 +182,6 @@ def test_copper_follows_its_temperature_from_the_map_s(more, options, expected, 
     assert ("--copper-degc" in capsys.readouterr().out) is (not more and not options)
 
 
-def test_guesses_are_assumed_and_options_are_taken(tmp_path):
-    losses = imported(in_radians(tmp_path), tmp_path, target=str(tmp_path / "doc.json"))
-    text = (tmp_path / "doc.json").read_text()
-    assert "it reaches 1256.64, the machine is rated 2730 rpm" in text
-    assert "beside 3.52e+05 W at the shaft" in text
-    (tmp_path / "out").rename(tmp_path / "first")
-    by_option = imported(in_radians(tmp_path), tmp_path, units="speed=rpm,power=W")
-    assert by_option["iron"]["at_speed"][-1] == pytest.approx(1256.637)
-    assert np.array(by_option["iron"]["P_W"]) == pytest.approx(np.array(losses["iron"]["P_W"]) / 1000, rel=1e-4)
-
-
 def test_the_rated_point_has_what_the_map_reads(tmp_path):
     """A torque stands in the machine's file, rated or assumed; where no loss reads it, it is not an input."""
     assert "torque_Nm" not in rated_inputs(load_machine(MACHINE))
@@ -203,19 +191,6 @@ def test_the_rated_point_has_what_the_map_reads(tmp_path):
     assert over["iron"]["speed"] == "id_A"
     rated = rated_inputs(load_machine(tmp_path / f"currents/out/{MACHINE}-currents.toml"))
     assert (rated["id_A"], rated["iq_A"]) == (150.0, 150.0)
-
-
-def test_losses_of_other_parts_stay(tmp_path):
-    columns = {"speed_rpm": N.ravel(), "torque_Nm": T.ravel(), "Iron_Loss": watts(N, T)["Stator_Iron_Loss"].ravel()}
-    losses = imported(text(tmp_path / "iron.csv", columns), tmp_path)
-    assert losses["iron"]["kind"] == "map"
-    assert {name: table["kind"] for name, table in losses.items() if name != "iron"} == {
-        "copper": "copper",
-        "magnet": "magnet",
-        "bearing.left": "bearing",
-        "bearing.right": "bearing",
-        "windage": "windage",
-    }
 
 
 def one_row(folder):
@@ -231,17 +206,8 @@ def negative(folder):
     return text(folder / "bad.csv", {"speed": N.ravel(), "torque": T.ravel(), "Iron_Loss": 5 - T.ravel()})
 
 
-def no_loss(folder):
-    return text(folder / "bad.csv", {"speed": N.ravel(), "torque": T.ravel(), "Efficiency": T.ravel()})
-
-
 def square(folder):
     scipy.io.savemat(folder / "bad.mat", {"Speed": SPEED, "Torque": np.arange(12.0), "Iron_Loss": np.ones((12, 12))})
-    return folder / "bad.mat"
-
-
-def new_matlab(folder):
-    (folder / "bad.mat").write_bytes(b"MATLAB 7.3 MAT-file" + bytes(200))
     return folder / "bad.mat"
 
 
@@ -255,14 +221,11 @@ WRONG = {
     "one speed": (one_row, {}, "over speed and torque, or over id and iq"),
     "points in no rows": (scattered, {}, "9 points have 9 values of the first axis"),
     "a negative loss": (negative, {"units": "power=W"}, "a loss is -275 W"),
-    "no loss": (no_loss, {}, "no column is of a loss"),
     "a foreign unit": (long, {"units": "speed=furlong"}, "'speed=furlong' is not a unit of a loss map"),
     "axes that may stand either way": (square, {}, "Speed may stand down or along 12 x 12 points"),
-    "MATLAB 7.3": (new_matlab, {}, "MATLAB file of version 7.3"),
     "a damaged file": (damaged, {}, "not readable as a MATLAB file"),
     "iron over currents without a speed": (over_currents, {}, "over id and iq says no speed"),
     "a machine of plain numbers": (long, {"machine": "series-dc-100kw"}, "its losses are plain numbers"),
-    "no machine": (long, {"machine": None}, "a loss map with --machine"),
 }
 
 

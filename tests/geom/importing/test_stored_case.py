@@ -61,6 +61,7 @@ def test_a_case_of_stored_temperatures_is_compared_with_its_own_network(tmp_path
     assert max(c.rmse_K for c in stored_test.channels if c.channel in PLACES) < 0.05
 
 
+@pytest.mark.nightly
 def test_losses_that_cannot_have_made_the_temperatures_give_way_and_the_contact_that_differs_is_named(tmp_path, capsys):
     """Stored under 300 W, where the file has 100, and with a contact a fifth as good: the tool says which."""
     places = PLACES | {

@@ -22,12 +22,6 @@ def test_sector_area_is_its_share_of_the_ring(sweep):
     assert shapes.sector(0.1, 0.2, 0.3, 0.3 + sweep).area == pytest.approx(sweep * (0.2**2 - 0.1**2) / 2)
 
 
-@given(st.floats(0.0, 6.28))
-def test_turning_keeps_the_area(angle):
-    bar = Profile(shapes.bar_loop(0.1, 0.15, 0.02))
-    assert bar.rotated(angle).area == pytest.approx(bar.area)
-
-
 def test_slots_and_bars_together_fill_the_disc():
     turns = shapes.evenly(12)
     core = Profile(shapes.slotted_loop(0.1, 0.01, 0.07, turns))
@@ -58,11 +52,6 @@ def test_faceted_circle_loses_the_area_of_an_inscribed_polygon():
     assert circle.to_polygon(ArcGrid([circle], n)).area == pytest.approx(n / 2 * 0.01 * math.sin(2 * math.pi / n))
 
 
-def test_thin_ring_keeps_its_area_though_only_one_side_has_fins():
-    shell = Profile(shapes.finned_loop(0.24, 0.004, 0.26, shapes.evenly(36)), (shapes.circle_loop(0.234),))
-    assert shell.to_polygon(ArcGrid([shell], 36)).area == pytest.approx(shell.area, rel=0.02)
-
-
 @pytest.mark.parametrize("name", ["series-dc-100kw-jacket-one", "tefc-industrial-radial", "pmsm-m1"])
 def test_bounds_are_those_of_a_fine_polygon(name):
     """Chords of 1 / 720 turn stay within R (1 - cos(pi / 720)), 3 um of 300 mm, inside."""
@@ -83,10 +72,5 @@ def corners(off):
     return len(grid.facet(shapes.circle_loop(0.1)))
 
 
-@pytest.mark.parametrize("off", [3e-12, 3e-10])
-def test_ends_that_differ_by_rounding_cut_a_circle_once(off):
-    assert corners(off) == corners(0.0)
-
-
-def test_ends_that_differ_both_cut_it():
-    assert corners(1e-3) == corners(0.0) + 1
+def test_ends_that_differ_by_rounding_cut_a_circle_once():
+    assert corners(3e-10) == corners(0.0) == corners(1e-3) - 1

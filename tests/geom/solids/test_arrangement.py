@@ -45,7 +45,7 @@ def test_a_bar_across_a_ring_is_inside_and_outside():
     assert both == pytest.approx((under[1] - under[0]) * R**2, rel=1e-12)
 
 
-@pytest.mark.parametrize("turned", np.linspace(0.0, 2 * math.pi, 13))
+@pytest.mark.parametrize("turned", [0.0, 1.0, 4.0])
 def test_points_on_the_chord_of_an_arc_are_inside(turned):
     """A circle is two half circles, so that its diameter is the chord of both."""
     loops = shapes.disc(R).rotated(turned).loops

@@ -4,7 +4,7 @@ import math
 
 import pytest
 
-from geom import InputError, check_cad, export_cad
+from geom import check_cad, export_cad
 from geom.description import shapes
 from geom.description.machine import Machine
 from geom.description.part import Part
@@ -23,11 +23,6 @@ def test_every_surface_is_watertight(checks):
 def test_solids_have_the_volume_of_the_formula(checks):
     for check in checks:
         assert check.solid_volume == pytest.approx(check.volume, rel=1e-9), check.part
-
-
-def test_surfaces_are_within_half_a_per_cent(checks):
-    for check in checks:
-        assert check.surface_volume == pytest.approx(check.volume, rel=0.005), check.part
 
 
 def test_stacked_prisms_become_one_solid():
@@ -74,8 +69,3 @@ def test_glb_comes_back_with_names_in_metres_and_upright(small, tmp_path):
     assert {part.name for part in small.parts} < set(scene.graph.nodes)
     assert sorted(scene.extents) == pytest.approx([0.04, 0.04, 0.1], rel=0.01)
     assert scene.bounds[1] == pytest.approx([0.02, 0.1, 0.02], rel=0.01)
-
-
-def test_unknown_format_is_refused(small, tmp_path):
-    with pytest.raises(InputError, match="step, stl, glb"):
-        export_cad(small, tmp_path, ("dwg",))

@@ -6,7 +6,6 @@ import cadquery as cq
 import pytest
 from OCP.BRepCheck import BRepCheck_Analyzer
 
-from geom import load_machine
 from geom.description import shapes
 from geom.description.profile import Profile
 from geom.solids.stack import stacked
@@ -79,23 +78,3 @@ def test_a_ceiling_with_a_hole_that_holds_an_island():
     )
     under = [face for face in whole.Faces() if abs(face.Center().z - 10.0) < 1e-9]
     assert [face.Area() * 1e-6 for face in under] == [pytest.approx(math.pi * 3 * R**2)]
-
-
-LARGE = ("series-dc-100kw", "tefc-industrial-radial", "series-dc-100kw-jacket-one")
-
-
-@pytest.mark.parametrize("name", ["pmsm-m1", *(pytest.param(name, marks=pytest.mark.nightly) for name in LARGE)])
-def test_parts_of_the_library_are_exact(name):
-    for part in load_machine(name).parts:
-        checked(part.prisms)
-
-
-def test_a_stack_is_the_same_after_step(tmp_path):
-    ring = (shapes.ring(R, 2 * R), 0.0, 0.01)
-    bars = [(p, 0.01, 0.03) for p in shapes.turned(Profile(shapes.bar_loop(1.2 * R, 1.8 * R, R / 5)), shapes.evenly(7))]
-    (whole,) = checked([ring, *bars])
-    cq.exporters.export(cq.Workplane(whole), str(tmp_path / "stack.step"))
-    back = cq.importers.importStep(str(tmp_path / "stack.step")).val()
-    assert back.isValid()
-    assert (back.Volume(), back.Area()) == (pytest.approx(whole.Volume()), pytest.approx(whole.Area()))
-    assert len(back.Faces()) == len(whole.Faces())

@@ -81,9 +81,7 @@ def test_free_form_walls_are_faceted():
 
 NOT_PRISMATIC = {
     "cone": lambda: cq.Solid.makeCone(20, 10, 50),
-    "sphere": lambda: cq.Solid.makeSphere(20),
     "plane": lambda: cq.Workplane().box(10, 10, 10).rotate((0, 0, 0), (1, 0, 0), 2).val(),
-    "torus": lambda: cq.Workplane().circle(20).extrude(30).edges(">Z").fillet(3).val(),
     "cylinder": lambda: cq.Workplane("YZ").circle(5).extrude(20).val(),
 }
 
@@ -136,14 +134,8 @@ def test_file_beside_gives_materials_fluids_axis_and_sections(tmp_path):
 
 WRONG = {
     "a solid without material": ("", ["rod", "[materials]"]),
-    "a material nobody knows": ('[materials]\nrod = "cheese"', ["cheese", "steel"]),
-    "values like those of nobody": ("[materials]\nrod = { k = 1.0 }", ["rod", "[materials]"]),
     "a solid that is not there": ('[materials]\nrod = "steel"\nrood = "steel"', ["rood", "rod"]),
-    "a pattern that fits nothing": ('[import]\nleave_out = ["screw*"]', ["screw*", "rod"]),
-    "an axis nobody knows": ('[import]\naxis = "w"', ["'w'", "x, y, z"]),
-    "a section nobody knows": ("[materails]", ["materails", "materials"]),
     "a key nobody knows": ("[import]\naxes = 1", ["axes", "axis"]),
-    "broken TOML": ("[import", ["TOML"]),
 }
 
 
@@ -156,12 +148,6 @@ def test_wrong_file_beside_is_one_message(case, tmp_path):
         import_step(path)
     for word in words:
         assert word in str(caught.value)
-
-
-def test_all_solids_that_cannot_be_sliced_are_named_at_once(tmp_path):
-    path = write(tmp_path / "a.step", rod=rod(), tip=cq.Solid.makeCone(9, 1, 5), ball=cq.Solid.makeSphere(3))
-    with pytest.raises(InputError, match=r"tip: .*; ball: .*leave_out"):
-        import_step(path)
 
 
 def test_files_that_are_no_assemblies_are_refused(tmp_path, capfd):
@@ -199,22 +185,10 @@ def test_same_name_twice_is_one_part(tmp_path):
     assert pin.volume == pytest.approx(2 * math.pi * R**2 * L)
 
 
-def test_machine_without_sidecar_takes_the_usual_materials(tmp_path):
-    small = Machine("small", "none", "", (Part("shaft", "steel", ((shapes.disc(R), 0.0, L),)),), (), {}, None, {})
-    path = export_cad(small, tmp_path, ("step",))["step"]
-    (tmp_path / "small.step.toml").unlink()
-    assert import_step(path).part("shaft").material == "steel"
-
-
-@pytest.mark.parametrize(
-    ("said", "right"),
-    [('shaft = "axle"', "one of winding"), ("shaft = { turns = 1 }", "one of"), ('bolt = "shaft"', "the file has")],
-)
-def test_a_role_that_is_none_is_one_message(tmp_path, said, right):
-    """An unknown word, a turn that is no yes or no, and a solid that is not there."""
+def test_a_role_that_is_none_is_one_message(tmp_path):
     small = Machine("small", "none", "", (Part("shaft", "steel", ((shapes.disc(R), 0.0, L),)),), (), {}, None, {})
     path = export_cad(small, tmp_path, ("step",))["step"]
     beside = path.with_name(f"{path.name}.toml")
-    beside.write_text(beside.read_text() + f"[roles]\n{said}\n")
-    with pytest.raises(InputError, match=right):
+    beside.write_text(beside.read_text() + '[roles]\nshaft = "axle"\n')
+    with pytest.raises(InputError, match="one of winding"):
         import_step(path)

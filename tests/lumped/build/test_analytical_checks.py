@@ -1,23 +1,10 @@
 """Hand formulas beside the field, on a machine whose bearings and liners have closed forms."""
 
-import csv
-
 import pytest
 
-from geom import load_machine
 from lumped.build.analytical_checks import analytical_checks
 from lumped.build.crosscheck import crosscheck
-from lumped.build.pipeline import build
-from lumped.condensation.reduction import Recipe
 from lumped.machine.loss_sources import loss_shares
-from thermoscope.commands.model.crosscheck import save
-
-
-@pytest.fixture(scope="module")
-def built():
-    return build(
-        load_machine("pmsm-m1-no-base"), recipe=Recipe(tolerance=0.1, shifts=(), random_points=0, max_states=60)
-    )
 
 
 @pytest.fixture(scope="module")
@@ -39,14 +26,8 @@ def test_heat_through_links_leaves_the_machine(check):
     assert check.links == tuple(sorted(check.links, key=lambda link: -link.percent_of_heat))
 
 
-def test_the_link_held_responsible_touches_the_part(check):
-    assert check.parts
-    for part in check.parts:
-        assert part.place in check.responsible(part.place).parts
-
-
 def test_films_and_contacts_have_the_area_of_the_drawing(hand):
-    """48 chords per turn lose 0.3 % of a circle's length; slots and ends a little more."""
+    """36 chords per turn lose 0.5 % of a circle's length; slots and ends a little more."""
     ratios = {link: row.ratio for link, row in hand.items() if " to " not in link}
     assert len(ratios) > 3
     assert ratios == pytest.approx(dict.fromkeys(ratios, 1.0), abs=0.02)
@@ -55,18 +36,3 @@ def test_films_and_contacts_have_the_area_of_the_drawing(hand):
 def test_two_thin_walls_in_series(hand, check):
     """Gap filling and liner carry the slots' heat and have no loss: half of each and the contact between."""
     assert hand["slot.gap to slot.liner"].ratio == pytest.approx(1.0, abs=0.1)
-
-
-def test_tables_are_saved(tmp_path, check, hand):
-    parts, links = ([vars(one) for one in own] for own in (check.parts, check.links))
-    document = {
-        "operating_point": {},
-        "crosscheck": parts,
-        "links": links,
-        "hand": [row.document() for row in hand.values()],
-        "energy_balance": check.energy_balance,
-    }
-    save(document, tmp_path)
-    rows = list(csv.DictReader((tmp_path / "crosscheck-hand.csv").open()))
-    assert len(rows) == len(hand)
-    assert float(rows[0]["ratio"]) == pytest.approx(float(rows[0]["textbook_K_W"]) / float(rows[0]["field_K_W"]))

@@ -2,7 +2,6 @@
 
 from dataclasses import replace
 
-import numpy as np
 import pytest
 
 from fem.matrices.bends import Bends
@@ -43,20 +42,3 @@ def test_few_middles_do_what_all_of_them_do(looks, found):
     few, none = looks.size(replace(FIRST, bends=found.bends))[1], looks.size(FIRST)[1]
     assert off(found.hot, found) < 2.0 * PERCENT < 5.0 < off(bare, found)  # the first order is within a factor two
     assert few - none < 0.7 * (every - none)
-
-
-def test_without_the_cheapest_edges_no_hot_spot_loses_more_than_the_sum():
-    each = {"core": np.array([[0.2, 0.0], [0.0, 0.3], [-0.4, 0.1]]), "shaft": np.array([[0.05, 0.1]])}
-    worth = edges._without_cheapest(each, 0.5)
-    assert {part: list(mine) for part, mine in worth.items()} == {"core": [False, False, True], "shaft": [False]}
-
-
-def test_points_that_pass_the_hot_spot_get_their_middles_back(looks, monkeypatch):
-    """With a first order that sees nothing, only what moved near the hot spots brings middles."""
-    every = looks.ready(replace(FIRST, bends=Bends.everywhere(LINEAR))).field
-    monkeypatch.setattr(edges, "linear_losses", lambda field, K, T, influence: 0.0 * influence)
-    with_bends = lambda bends: looks.ready(replace(FIRST, bends=bends)).field  # noqa: E731
-    few = edges.bending_edges(looks.point, every, with_bends, LINEAR, PERCENT, FLOOR)
-    heated = [part for part in few.bends.parts if few.bends.parts[part][:, -1].any()]
-    assert heated
-    assert set(heated) <= set(few.hot)

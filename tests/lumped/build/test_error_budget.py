@@ -9,7 +9,6 @@ from library_machines import point_in
 from small_case import small_case
 
 from geom import load_machine
-from lumped.build import pipeline, rated_errors
 from lumped.build.fixed_coefficients import rated
 from lumped.build.pipeline import Built, Meshing, build, coefficients_on, meshed
 from lumped.build.rated_errors import HOT, Reader, at_rated_point, cached_errors, hot_rows
@@ -89,6 +88,7 @@ class Opened:
     positions: dict = field(default_factory=dict)
 
 
+@pytest.mark.nightly
 def test_with_fitted_contacts_a_smaller_network_is_as_far_off_as_its_budget_says(built, looks):
     """Hot spots of two networks of one machine after three hours of rated losses, all contacts x5: further apart than
     the rated point and factors up to 2 tell, and within what a look at the model's own values does."""
@@ -114,17 +114,6 @@ def test_with_fitted_contacts_a_smaller_network_is_as_far_off_as_its_budget_says
     rated_only, here, beside = left(built, {}), left(built, contacts), left(larger, contacts)
     assert all(off <= FEEDBACK * (here[name] + beside[name]) for name, off in apart.items())
     assert any(off > FEEDBACK * (rated_only[name] + beside[name]) for name, off in apart.items())
-
-
-def test_what_was_looked_at_once_is_kept(built, looks, found, monkeypatch):
-    monkeypatch.setattr(rated_errors, "at_rated_point", lambda built, looks: found)
-    first = cached_errors(built, looks)
-    monkeypatch.setattr(rated_errors, "at_rated_point", None)
-    assert cached_errors(built, looks) == first == found
-
-
-def test_coarser_keeps_the_chords_so_that_volumes_agree(built):
-    assert built.meshing.coarser == Meshing(2 * SIZE, SEGMENTS, pipeline.ACROSS / 2, 2 * AXIAL)
 
 
 @pytest.mark.parametrize("command", ["compare", "simulate"])

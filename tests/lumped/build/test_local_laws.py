@@ -4,19 +4,10 @@ import numpy as np
 import pytest
 
 from fem.solvers.solve import Solver
-from geom import load_machine
 from lumped.build.crosscheck import copper, crosscheck, radiating, with_local_laws
-from lumped.build.pipeline import build
-from lumped.condensation.reduction import Recipe
 from lumped.machine.loss_sources import loss_shares
 
 POINT = {"current_A": 8.0, "speed_rpm": 0.0}
-
-
-@pytest.fixture(scope="module")
-def built():
-    small = Recipe(tolerance=0.1, shifts=(), random_points=0, max_states=60)
-    return build(load_machine("pmsm-m1-no-base"), 0.1, 36, small)
 
 
 @pytest.mark.heavy

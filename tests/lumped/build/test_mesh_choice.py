@@ -97,48 +97,6 @@ def test_a_mesh_that_grows_too_large_is_told(second_order):
     assert found.worst > LARGEST_SHARE * 0.1
 
 
-def test_no_mesh_is_solved_that_memory_does_not_hold(second_order, monkeypatch):
-    """What a halving moves is then seen on a mesh that is coarser the other ways."""
-    monkeypatch.setattr(mesh_choice, "MOST_SOLVED", 2000)
-    monkeypatch.setattr(mesh_choice, "MOST_QUADRATIC", 2000)
-    monkeypatch.setattr(mesh_choice, "ROOM", 1.0)
-    found = chosen_mesh(MACHINE, 0.1, FIRST, silent, most=2000)
-    assert not found.met
-    assert found.percent["winding"] == pytest.approx(125.0 * low(FIRST), rel=0.1)
-    assert max(second_order) == 2000
-
-
-def test_a_first_mesh_that_leaves_no_room_begins_with_fewer_elements_across(second_order, monkeypatch):
-    """Where 2,000 of 2,500 unknowns were spent on slots and bars, the axis could not be refined."""
-    monkeypatch.setitem(LOST, "across", 0.0)
-    found = chosen_mesh(MACHINE, 2.5, FIRST, silent, most=2500)
-    assert found.met
-    assert halved(found.meshing, "across") < 1.0 < halved(found.meshing, "axial_m")
-
-
-def test_a_look_ahead_is_of_meshes_that_were_not_looked_at(second_order):
-    looks = mesh_choice._Looks(MACHINE, silent, FIRST)
-    other, third = FIRST.along("axial_m", 0.5), FIRST.along("size_m", 0.5)
-    looks.solve([FIRST], [FIRST, other, third])
-    assert set(looks.rises) == {FIRST, other}
-    looks.solve([FIRST, other], [third])
-    assert third not in looks.rises
-
-
-def test_a_step_that_is_enough_is_taken_before_one_part_is_tried(second_order, monkeypatch):
-    """Thinner ends leave little here, but all that is missing: no mesh with smaller triangles of one part is solved."""
-
-    def hot(point, how, T):
-        low = 0.016 * 0.25 ** how.ends.count("stator.core") + 0.024 * halved(how, "size_m") ** -2.0
-        return {p: T * (1.0 - low) for p, T in EXACT.items()}
-
-    monkeypatch.setattr(mesh_choice, "hot_spots", hot)
-    monkeypatch.setattr(mesh_choice, "_one_part_finer", lambda *of: pytest.fail("tried"))
-    found = chosen_mesh(MACHINE, 6.5, FIRST, silent)
-    assert found.met
-    assert found.meshing.ends == ("stator.core",)
-
-
 def test_an_order_that_does_not_show_is_not_assumed(second_order, monkeypatch):
     """Where the next halving moves as much again, nothing says how far it goes on: four times that, with safety."""
     monkeypatch.setattr(
@@ -171,20 +129,6 @@ def test_layers_towards_the_ends_of_one_part_are_a_way(second_order, monkeypatch
     assert replace(found.meshing, ends=(), bends=None) == FIRST
 
 
-def test_what_thinner_ends_have_mended_is_not_left_along_the_axis(second_order, monkeypatch):
-    """Where either does the same, and only ends may become finer, the axis is looked at again on the mesh at hand."""
-
-    def hot(point, how, T):
-        low = 0.05 * min(0.2 ** len(how.ends), halved(how, "axial_m") ** -2.0)
-        return {p: T * (1.0 - low) for p, T in EXACT.items()}
-
-    monkeypatch.setattr(mesh_choice, "hot_spots", hot)
-    found = chosen_mesh(MACHINE, 5.0, FIRST, silent, most=2000)
-    assert found.met
-    assert found.meshing.ends
-    assert found.meshing.axial_m == FIRST.axial_m
-
-
 def test_triangles_of_the_one_part_that_moves_the_hot_spot_are_smaller(second_order, monkeypatch):
     """Where they alone do what smaller ones everywhere would, the others stay as they are."""
 
@@ -199,13 +143,6 @@ def test_triangles_of_the_one_part_that_moves_the_hot_spot_are_smaller(second_or
     assert found.met
     assert set(found.meshing.finer) == {"stator.core"}
     assert found.meshing.size_m == FIRST.size_m
-
-
-def test_of_two_ways_that_leave_alike_the_cheaper_one_is_refined(second_order):
-    looks = mesh_choice._Looks(MACHINE, silent, FIRST)
-    left = {"size_m": 0.1, "axial_m": 3.0, "stator.core": 2.0}
-    assert mesh_choice._refined(looks, FIRST, left, 170_000) == "stator.core"  # nothing is added by thinner ends here
-    assert mesh_choice._refined(looks, FIRST, {**left, "axial_m": 5.0}, 170_000) == "axial_m"
 
 
 def test_a_machine_is_looked_at_once(monkeypatch):

@@ -3,6 +3,7 @@
 from dataclasses import replace
 
 import numpy as np
+import pytest
 
 from geom import load_machine
 from geom.machine_file import machine_from
@@ -41,6 +42,7 @@ def test_insulation_is_within_5_percent_of_its_rise(tmp_path, monkeypatch):
     assert off[CASE.thin] < 5.0 < off[1.0]
 
 
+@pytest.mark.nightly
 def test_a_liner_between_winding_and_core_is_within_5_percent_where_its_contacts_are_opposed(tmp_path, monkeypatch):
     """Close to the core, far from the winding and the gap's air: its nose is as warm as neither; 9 % else."""
     monkeypatch.setenv("THERMOSCOPE_CACHE", str(tmp_path))

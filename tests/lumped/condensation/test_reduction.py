@@ -6,7 +6,7 @@ import pytest
 from fem.matrices.assembly import assemble
 from fem.matrices.grids import ring
 from fem.matrices.material import isotropic, laminated, wound
-from fem.solvers.solve import Fluids, Solver, only_fixed, steady
+from fem.solvers.solve import Solver, only_fixed, steady
 from geom.errors import InputError
 from lumped.condensation.linear import linear, unit_load
 from lumped.condensation.reduction import Recipe, Zone, reduce
@@ -235,26 +235,6 @@ def test_cache_gives_the_same_network(field, films, tmp_path):
     assert len(list(tmp_path.glob("*.npz"))) == 1
     assert np.array_equal(first.C, second.C)
     assert all(np.array_equal(a.vals, b.vals) for a, b in zip(first.links, second.links, strict=True))
-
-
-def test_network_and_field_with_streaming_air(field, films, network, solver):
-    """Fluid nodes and a stream on top: the same block system on both sides."""
-    fluids = Fluids(("bore", "air"), np.array([[4.0, 0.0], [-4.0, 4.0]]), np.array([4.0 * 10, 0.0]), {"ambient": 10.0})
-    full, load = loaded(field, network, {"coil": 300.0})
-    found = steady(solver, films, CONTACTS, full, fluids)
-    system = linear(network, films, CONTACTS)
-    names = [(*network.states, *network.boundaries)[c] for c in system.fluid]
-    order = [names.index(n) for n in fluids.names]
-    B, D = system.B[:, order], np.diag(system.B[:, order].T @ uniform(network, system)) + fluids.D
-    full_matrix = np.block([[system.A, -B], [-B.T, D]])
-    known = load[system.solid] + 10.0 * system.B[:, names.index("ambient")]
-    z = np.linalg.solve(full_matrix, np.concatenate([known, fluids.s]))
-    assert z[-2:] == pytest.approx(found.u, rel=1e-3)
-
-
-def uniform(network, system):
-    """States of a machine at 1 degC everywhere."""
-    return np.array(["#" not in network.states[i] for i in system.solid], float)
 
 
 def test_means_alone_need_no_solution(field, films, monkeypatch):

@@ -3,73 +3,30 @@
 import math
 import warnings
 
-import ht
 import numpy as np
 import pytest
 
 from geom.errors import InputError
-from lumped.correlations import RangeWarning, film_tabulated
+from lumped.correlations import film_tabulated
 from lumped.correlations.air_gap import becker_kaye, taylor_film
-from lumped.correlations.contacts import (
-    concentric_cylinders,
-    cooper_mikic_yovanovich,
-    gap_film,
-    groove_emissivity,
-    radiation_film,
-)
-from lumped.correlations.ducts import duct_film, hausen_laminar, shah_london, staton_rectangle
-from lumped.correlations.end_space import end_space
-from lumped.correlations.fins import heiles, van_de_pol_tierney
-from lumped.correlations.forced import churchill_bernstein, flat_plate
-from lumped.correlations.natural import churchill_chu_cylinder, churchill_chu_plate
-from lumped.correlations.rotating import saari_windage
+from lumped.correlations.contacts import concentric_cylinders, cooper_mikic_yovanovich, gap_film, groove_emissivity
+from lumped.correlations.ducts import hausen_laminar, shah_london, staton_rectangle
+from lumped.correlations.forced import flat_plate
+from lumped.correlations.natural import churchill_chu_plate
 from lumped.correlations.windings import mellor as mellor_circuit
 from lumped.transfer.properties import air, ethylene_glycol, mass_fraction_of, water
 
 pytestmark = pytest.mark.filterwarnings("ignore::lumped.correlations.RangeWarning")
 
 GLYCOL = ethylene_glycol(60.0, 0.5)
-AIR60 = air(60.0)
 
 
-def test_standing_rotor_is_pure_conduction_through_the_gap():
-    k, gap = air(80.0).k, 0.001
-    two_films = 1 / (2 / taylor_film(0.0, 0.1, gap)[0])
-    assert two_films == pytest.approx(k / gap, rel=1e-12)
-    assert becker_kaye(0.0, 0.1, gap)[0] == pytest.approx(k / gap, rel=1e-12)
-    exact = k / (0.1 * math.log(0.101 / 0.1))
-    assert two_films == pytest.approx(exact, rel=0.01)
-
-
-@pytest.mark.parametrize(
-    ("Ta", "films", "whole"), [(60, 2.55, 2.58), (100, 3.52, 3.77), (300, 6.1, 6.4), (1000, 11.1, 11.4)]
-)
+@pytest.mark.parametrize(("Ta", "films", "whole"), [(60, 2.55, 2.58), (300, 6.1, 6.4), (1000, 11.1, 11.4)])
 def test_air_gap_laws_agree_with_the_published_comparison(Ta, films, whole):
     fluid, r, gap = air(80.0), 0.1, 0.001
     omega = Ta * fluid.nu / (r * gap) / math.sqrt(gap / r)
     assert taylor_film(omega, r, gap)[1].numbers["Nu"] == pytest.approx(films, rel=0.01)
     assert becker_kaye(omega, r, gap)[1].numbers["Nu"] == pytest.approx(whole, rel=0.03)
-
-
-@pytest.mark.parametrize(("spacing", "h"), [(0.004, 0.9), (0.008, 3.4), (0.012, 4.4), (0.020, 4.9)])
-def test_van_de_pol_tierney_worked_values(spacing, h):
-    """Depth 20 mm, height 0.25 m, 40 K above an ambient that is not stated (30 degC here: 2 to 4 %)."""
-    assert van_de_pol_tierney(0.02, spacing, 0.25, 70.0, 30.0)[0] == pytest.approx(h, rel=0.05)
-
-
-@pytest.mark.parametrize(("speed", "h"), [(1, 6.9), (3, 17), (5, 26), (10, 45), (15, 63)])
-def test_heiles_worked_values(speed, h):
-    assert heiles(speed, 0.02, 0.25, turbulence=1.0)[0] == pytest.approx(h, rel=0.04)
-
-
-def test_vertical_plate_worked_example():
-    """Incropera et al. 2007, example 9.2: glass fire screen 0.71 m, 232 and 23 degC, h = 7.0 W/m2/K."""
-    assert churchill_chu_plate(0.71, 232.0, 23.0)[0] == pytest.approx(7.0, abs=0.15)
-
-
-def test_cylinder_in_cross_flow_worked_example():
-    """Incropera et al. 2007, example 7.4: 12.7 mm, 10 m/s, 26 and 128 degC, h = 96 W/m2/K."""
-    assert churchill_bernstein(10.0, 0.0127, air(77.0))[0] == pytest.approx(96.0, rel=0.03)
 
 
 def test_flat_plate_far_above_transition_is_the_known_formula():
@@ -88,34 +45,10 @@ def test_laminar_and_rectangular_limits():
     assert staton_rectangle(0.0) == pytest.approx(7.541, rel=0.01)
 
 
-def test_heiles_agrees_with_duct_flow():
-    """Published cross-check at 20 mm, 0.25 m, 5 m/s: 26 against 24 W/m2/K."""
-    assert heiles(5.0, 0.02, 0.25, 1.0)[0] == pytest.approx(duct_film(5.0, 0.02, 0.25)[0], rel=0.2)
-
-
-def test_smooth_duct_film_is_between_laminar_and_turbulent_in_transition():
-    v = 3000 * GLYCOL.nu / 0.009
-    Nu = duct_film(v, 0.009, 0.5, GLYCOL)[1].numbers["Nu"]
-    assert hausen_laminar(2300, GLYCOL.Pr, 0.009, 0.5) < Nu < ht.turbulent_Gnielinski(4000, GLYCOL.Pr, 0.0416)
-
-
-def test_radiation_film_worked_values():
-    """6.9 W/m2/K at emissivity 0.9 between 80 and 20 degC; 1.5 at 0.2."""
-    assert radiation_film(0.9, 80.0, 20.0)[0] == pytest.approx(6.9, abs=0.05)
-    assert radiation_film(0.2, 80.0, 20.0)[0] == pytest.approx(1.5, abs=0.05)
-
-
 def test_grooves_and_gaps_between_grey_walls():
     assert groove_emissivity(1.0, 0.02, 0.01) == 1.0
     assert 0.8 < groove_emissivity(0.8, 0.02, 0.01) < 1.0
     assert concentric_cylinders(1.0, 1.0, 0.9, 0.9) == pytest.approx(1 / (2 / 0.9 - 1))
-
-
-def test_frame_of_a_motor_lies_in_the_measured_envelope():
-    """Boglietti et al. 2003: still air and radiation together, R0 = 0.167 A^-1.039 K/W, within a factor 1.5."""
-    area, rise = 0.5, 40.0
-    h = churchill_chu_cylinder(0.3, 20 + rise, 20.0)[0] + radiation_film(0.9, 20 + rise, 20.0)[0] * 0.4
-    assert 1 / 1.5 < 1 / (h * area) / (0.167 * area**-1.039) < 1.5
 
 
 def test_contacts():
@@ -135,12 +68,6 @@ def test_mellor_circuit_is_exact_for_a_heated_cylinder_cooled_outside():
     assert T.outer + T.radial_mean == pytest.approx(mean, rel=1e-7)
 
 
-def test_windage_is_zero_at_rest_and_near_cubic_at_speed():
-    assert saari_windage(0.0, 0.1, 0.001, 0.2)[0] == 0.0
-    low, high = (saari_windage(w, 0.1, 0.001, 0.2)[0] for w in (300.0, 600.0))
-    assert 2.2 < math.log2(high / low) < 3.0
-
-
 @pytest.mark.parametrize(
     ("T", "rho", "cp", "k", "mu"), [(0, 1074.6, 3203, 0.377, 7.93e-3), (60, 1040.5, 3503, 0.414, 1.37e-3)]
 )
@@ -148,12 +75,6 @@ def test_glycol_is_the_published_table(T, rho, cp, k, mu):
     f = ethylene_glycol(T, 0.5)
     assert (f.rho, f.cp, f.k) == pytest.approx((rho, cp, k), rel=2e-3)
     assert f.mu == pytest.approx(mu, rel=5e-3)
-
-
-def test_what_a_coolant_is_not_known_at_is_said_in_tenths():
-    with pytest.raises(InputError, match=r"T = -50 degC; -35\.9 to 100 degC"):
-        ethylene_glycol(-50.0, 0.5)
-    ethylene_glycol(-35.9, 0.5)
 
 
 def test_fluids_at_20_degC():
@@ -180,12 +101,6 @@ def test_water_under_pressure_is_that_of_iapws(degC):
 
 def test_half_by_volume_is_more_than_half_by_mass():
     assert mass_fraction_of(0.5) == pytest.approx(0.527, abs=0.001)
-
-
-def test_out_of_range_warns_with_value_and_range():
-    with pytest.warns(RangeWarning, match=r"v = 80 outside 0 to 50"):
-        info = end_space(80.0)[1]
-    assert info.outside == ("v",)
 
 
 def test_a_tabulated_film_is_the_correlation():

@@ -9,7 +9,7 @@ import pytest
 from correlation_cases import AIR, CARRY_UNITS, CASES, GLYCOL, Units, declared
 from test_correlations_worked import WORKED
 
-from lumped.correlations import Info, RangeWarning, ducts
+from lumped.correlations import Info, RangeWarning
 
 OTHER = Units(m=3.0, s=0.25, kg=7.0, K=1.7)
 EVERY = sorted(declared())
@@ -76,9 +76,3 @@ def test_it_names_source_range_and_worked_value(name, in_silence):
     assert re.search(r"[Ss]ource:|et al\.|Stefan", text)
     assert re.search(r"Range:|Range \(", text)
     assert re.search(r"(18|19|20)\d\d|Stefan", info.source)
-
-
-def test_a_cold_jacket_crosses_its_transition_without_a_jump(in_silence):
-    h = np.array([ducts.duct_film(x, 0.009, 0.5, GLYCOL)[0] for x in np.linspace(0.0, 2.0, 8001)])
-    assert np.all(np.diff(h) >= 0.0)
-    assert np.diff(h)[1:].max() <= 0.02 * h.max()

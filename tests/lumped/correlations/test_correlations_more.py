@@ -1,15 +1,13 @@
 """Published values and physics that single correlations must show; for all of them: test_correlations_all.py."""
 
 import math
-import warnings
 from functools import partial
 
 import numpy as np
 import pytest
-from numpy.testing import assert_allclose
 
-from lumped.correlations import RangeWarning, air_gap, contacts, ducts, natural, rotating
-from lumped.correlations.bearings import brush_friction, kylander_bearing, skf_friction
+from lumped.correlations import contacts, ducts, natural, rotating
+from lumped.correlations.bearings import brush_friction, skf_friction
 from lumped.correlations.contacts import coaxial_discs, parallel_rectangles
 from lumped.correlations.fins import heiles, heiles_decaying, mean_of_decay, straight_decay
 from lumped.transfer.properties import air
@@ -25,18 +23,6 @@ def test_an_annulus_as_wide_as_a_tube_is_near_the_tube_s_turbulent_film():
     """Gnielinski's annulus with heat inside lies within 25 % of a duct of the same hydraulic diameter."""
     annulus = ducts.gnielinski_annulus(20.0, 0.02, 0.06, 4.0)[0]
     assert annulus == pytest.approx(ducts.duct_film(20.0, 0.04, 4.0)[0], rel=0.25)
-
-
-def test_slots_change_nothing_at_rest_and_a_tenth_at_most():
-    assert air_gap.gazley_slotting(0.01, 0.001, 0.0)[0] == 1.0
-    assert air_gap.gazley_slotting(0.01, 0.001, 9e3)[0] == pytest.approx(1.1)
-
-
-def test_without_through_flow_the_gap_is_taylor_s():
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore", RangeWarning)
-        blown = air_gap.kosterin_finatev(300.0, 0.0, 0.1, 0.001)[0]
-    assert blown == air_gap.taylor_film(300.0, 0.1, 0.001)[0]
 
 
 def test_a_leaking_channel_lies_between_its_ends():
@@ -64,21 +50,11 @@ def test_disc_friction_is_the_moment_of_von_karman():
 
 
 def test_bearings_and_brushes():
-    """Kylander at 60 mm, standing: 0.45 * 0.06 * 33 = 0.891 K/W."""
-    assert kylander_bearing(0.06, 0.0)[0] == pytest.approx(0.891)
-    assert kylander_bearing(0.06, 300.0)[0] < 0.891
     assert skf_friction(2000.0, 0.05, 100.0) == pytest.approx(7.5)
     assert brush_friction(4e-3, 10.0) == pytest.approx(0.2 * 2e4 * 4e-3 * 10.0)
 
 
-@pytest.mark.parametrize("pair", contacts.PRESSED)
-def test_pressed_contacts_are_spread_over_their_table(pair):
-    mean, sd = contacts.contact_film(pair)
-    low, high = contacts.PRESSED[pair]
-    assert_allclose([mean * math.exp(-2 * sd), mean * math.exp(2 * sd)], [low, high], rtol=1e-12)
-
-
-@pytest.mark.parametrize("area", [0.2, 0.5, 1.0, 2.0])
+@pytest.mark.parametrize("area", [0.2, 2.0])
 def test_frames_from_0_2_to_2_m2_lie_in_the_measured_envelope(area):
     """Boglietti et al. 2003: still air and radiation together, R0 = 0.167 A^-1.039 K/W within a factor 1.5.
 

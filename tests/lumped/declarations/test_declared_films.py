@@ -81,7 +81,7 @@ def test_in_still_air_a_node_rests_where_the_correlation_says(surface):
     assert film(T)[0] * AREA * (T - 20.0) == pytest.approx(100.0, rel=3e-3)
 
 
-@pytest.mark.parametrize("degC", [-30.0, 20.0, 60.0, 110.0])
+@pytest.mark.parametrize("degC", [-30.0, 110.0])
 @pytest.mark.parametrize("shape", ["vertical plate", "horizontal cylinder"])
 def test_still_air_has_the_properties_of_its_film_temperature(shape, degC):
     """Against ht with the air of fluids at (surface + air) / 2; air of 60 degC cools 5 to 7 % less than that of 20."""
@@ -97,32 +97,14 @@ def test_still_air_has_the_properties_of_its_film_temperature(shape, degC):
     assert Nu[shape](Pr, Gr) * k / 0.3 * AREA * (T - degC) == pytest.approx(100.0, rel=3e-3)
 
 
-def test_a_declared_temperature_holds_the_properties():
-    """Air of 60 degC with the properties of air at 20: cooler than it would be by 2 to 4 % of the rise."""
-    keys = {"surface": "vertical plate", "size_m": 0.3}
-    follows, holds = (
-        steady(declared("natural", more), {}, {"ambient": 60.0})["a"] for more in (keys, {**keys, "fluid_degC": 20.0})
-    )
-    assert 1.02 < (follows - 60.0) / (holds - 60.0) < 1.06
-
-
 def at_film_temperature(network, inputs, degC, film, within=3e-3):
     """A node rests where the film says, with the air of the mean of surface and air; 0.3 % for the table."""
     T = steady(network, inputs, {"ambient": degC})["a"]
     assert film(air(0.5 * (T + degC)))[0] * AREA * (T - degC) == pytest.approx(100.0, rel=within)
 
 
-@pytest.mark.parametrize("degC", [-10.0, 20.0, 60.0, 100.0])
-@pytest.mark.parametrize("surface", MOVING)
-def test_moving_air_has_the_properties_of_its_film_temperature(surface, degC):
-    keys, film = MOVING[surface]
-    network = declared("forced", {"surface": surface, "speed": "v_km_h", "m_s_per_unit": 1 / 3.6} | keys)
-    for v in (4.0, 8.0, 40.0):
-        at_film_temperature(network, {"v_km_h": 3.6 * v}, degC, lambda fluid, v=v: film(v, fluid))
-
-
-@pytest.mark.parametrize("degC", [-10.0, 20.0, 60.0, 100.0])
-@pytest.mark.parametrize("surface", ["plate", "duct", "helical pipe"])
+@pytest.mark.parametrize("degC", [-10.0, 100.0])
+@pytest.mark.parametrize("surface", ["plate", "duct"])
 def test_the_edge_of_a_regime_is_where_the_correlation_has_it(surface, degC):
     """A plate's boundary layer turns turbulent at 11 to 25 m/s in air of -10 to 100 degC, a duct of 20 mm at 2 m/s."""
     keys, film = MOVING[surface]
@@ -131,7 +113,7 @@ def test_the_edge_of_a_regime_is_where_the_correlation_has_it(surface, degC):
         at_film_temperature(network, {"v": v}, degC, lambda fluid, v=v: film(v, fluid))
 
 
-@pytest.mark.parametrize("surface", MOVING)
+@pytest.mark.parametrize("surface", ["plate", "duct"])
 def test_declared_properties_of_moving_air_hold(surface):
     keys, film = MOVING[surface]
     declared_air = {"surface": surface, "speed": "v", "fluid_degC": 40.0}
@@ -141,7 +123,7 @@ def test_declared_properties_of_moving_air_hold(surface):
         assert film(v, air(40.0))[0] * AREA * (T - 80.0) == pytest.approx(100.0, rel=3e-3)
 
 
-@pytest.mark.parametrize("degC", [-10.0, 20.0, 60.0, 100.0])
+@pytest.mark.parametrize("degC", [-10.0, 100.0])
 @pytest.mark.parametrize("law", ["taylor", "becker-kaye"])
 def test_through_the_gap_the_whole_film_counts(law, degC):
     """Still, and full of vortices."""
@@ -153,7 +135,7 @@ def test_through_the_gap_the_whole_film_counts(law, degC):
         at_film_temperature(network, {"speed_rpm": rpm}, degC, lambda x, of=turned: (walls * of(x)[0],))
 
 
-@pytest.mark.parametrize("degC", [-10.0, 20.0, 60.0, 100.0])
+@pytest.mark.parametrize("degC", [-10.0, 100.0])
 @pytest.mark.parametrize(
     ("surface", "film"),
     [
@@ -167,7 +149,7 @@ def test_what_turns_in_open_air(surface, film, degC):
         at_film_temperature(network, {"speed_rpm": rpm}, degC, lambda x, w=rpm * np.pi / 30: film(w, x))
 
 
-@pytest.mark.parametrize("degC", [20.0, 45.0, 80.0])
+@pytest.mark.parametrize("degC", [20.0, 80.0])
 def test_a_liquid_in_a_channel_has_the_properties_of_its_own_temperature(degC):
     """Water, turbulent throughout: as Gnielinski asks for, whatever the wall's temperature."""
     keys = {"surface": "duct", "size_m": 0.5, "diameter_mm": 10.0, "speed": "v", "coolant": "water", "up_to_m_s": 4.0}
@@ -253,28 +235,6 @@ def test_faster_than_expected_is_the_correlation_and_beyond_its_range_warns():
         simulate(network, Record(np.arange(3.0), {"v": 5000.0}, {"ambient": 20.0}))
 
 
-@pytest.mark.parametrize(("rise", "said"), [(70.0, 0), (150.0, 1)])
-def test_horizontal_fins_wider_than_their_correlation_knows_are_said(rise, said):
-    """Jones and Smith's Rayleigh number ends at 6e5: fins 60 mm apart reach it 76 K above air of 95 degC."""
-    data = document("natural", {"surface": "horizontal fins", "spacing_mm": 60.0})
-    air_degC = 95.0 - 0.5 * rise
-    with warnings.catch_warnings(record=True) as caught:
-        warnings.simplefilter("always", RangeWarning)
-        simulate(read_network(data), Record(np.array([0.0, 1e-3]), {}, {"ambient": air_degC}, air_degC + rise))
-    words = [str(w.message) for w in caught]
-    assert [bool(re.search(r"jones_smith: 150 K .* outside 0 to 7\d\.\d+", x)) for x in words] == [True] * said
-
-
-@pytest.mark.parametrize(("rpm", "said"), [((0.0, 3000.0), []), ((0.0, 3000.0, 20.0, 20.0), ["n = 20 at 2"])])
-def test_slower_than_its_correlation_knows_is_said_but_not_rest(rpm, said):
-    """A shaft of 60 mm in air of 50 degC has a Reynolds number of 1e3 at 95 rpm; whoever passes it is not meant."""
-    network = declared("rotating", {"surface": "shaft", "speed": "n", "diameter_mm": 60.0})
-    with warnings.catch_warnings(record=True) as caught:
-        warnings.simplefilter("always", RangeWarning)
-        simulate(network, Record(np.arange(float(len(rpm))), {"n": np.array(rpm)}, {"ambient": 20.0}))
-    assert [words in str(w.message) for w, words in zip(caught, said, strict=True)] == [True] * len(said)
-
-
 @pytest.mark.parametrize(
     ("mechanism", "keys", "message"),
     [
@@ -282,8 +242,6 @@ def test_slower_than_its_correlation_knows_is_said_but_not_rest(rpm, said):
         ("natural", {"surface": "sphere"}, "'sphere'.*vertical fins"),
         ("forced", {"surface": "plate", "size_m": 0.5}, "'speed' is missing"),
         ("contact", {"joint": "glue"}, "'glue'.*known"),
-        ("gap", {"gap_mm": 1.0}, "rotor_radius_mm"),
-        ("rotating", {"surface": "drum", "diameter_mm": 100.0}, "'drum'.*disc, shaft"),
         ("mixed", {"natural": {"surface": "vertical plate", "size_m": 0.2}}, "mixed forced.*'surface' is missing"),
     ],
 )

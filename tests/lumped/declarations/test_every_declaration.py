@@ -18,7 +18,6 @@ from lumped.declarations.parameters import MAPPINGS
 from lumped.integration.balance import balance
 from lumped.integration.simulate import Record, simulate
 from lumped.model.network import Parameter
-from lumped.transfer.coolant import MIXED, PLAIN as PURE
 from lumped.transfer.exchanger import ARRANGEMENTS
 
 pytestmark = pytest.mark.filterwarnings("ignore::lumped.correlations.RangeWarning")
@@ -42,15 +41,9 @@ LINKS = {
     "h": {"h_W_m2K": 12.0},
     "G of inputs": {"G_W_K": 4.0, "of": {"input": "speed_rpm", "at": 1000.0, "exponent": 0.8}},
     **{f"natural {name}": {"natural": {"surface": name, **keys}} for name, (keys, _) in STILL.items()},
-    **{
-        f"natural {name} at 40 degC": {"natural": {"surface": name, "fluid_degC": 40.0, **keys}}
-        for name, (keys, _) in STILL.items()
-    },
+    "natural at 40 degC": {"natural": {"surface": "horizontal cylinder", "fluid_degC": 40.0, "size_m": 0.3}},
     **{f"forced {name}": {"forced": {"surface": name, "speed": "v", **keys}} for name, (keys, _) in MOVING.items()},
-    **{
-        f"forced {name} at 40 degC": {"forced": {"surface": name, "speed": "v", "fluid_degC": 40.0, **keys}}
-        for name, (keys, _) in MOVING.items()
-    },
+    "forced at 40 degC": {"forced": {"surface": "plate", "speed": "v", "fluid_degC": 40.0, "size_m": 0.5}},
     "forced water": {"forced": {"surface": "duct", "speed": "v", "coolant": "water", **MOVING["duct"][0]}},
     "forced of inputs": {"forced": {"h_W_m2K": 9.0, "of": {"input": "v", "at": 5.0, "exponent": 0.8}}},
     **{f"rotating {name}": {"rotating": {"surface": name, "diameter_mm": 200.0}} for name in ROTATING},
@@ -58,9 +51,8 @@ LINKS = {
         f"gap {law}": {"gap": {"rotor_radius_mm": 80.0, "gap_mm": 0.7, "law": law}} for law in ("taylor", "becker-kaye")
     },
     "radiation": {"radiation": {"emissivity": 0.9, "view_factor": 0.8}},
-    **{f"contact {name}": {"contact": {"joint": name}} for name in GAPS},
-    **{f"contact {name}": {"contact": {"pair": name}} for name in PRESSED},
-    "contact of a gap": {"contact": {"gap_mm": 0.037}},
+    "joint": {"contact": {"joint": next(iter(GAPS))}},
+    "pair": {"contact": {"pair": next(iter(PRESSED))}},
     "fan": {"fan": {"h_W_m2K": 40.0, "at_rpm": 1460.0}},
     "power": {"power": {"h_W_m2K": 3.0, "exponent": 0.33}},
     "table": {"table": {"difference_K": [0.0, 10.0, 60.0], "G_W_K": [1.0, 1.4, 2.0]}},
@@ -120,15 +112,7 @@ STREAMS = {
     "mcp of inputs": {"mcp_W_K": 3.0, "of": {"input": "flow", "at": 1.0, "exponent": 1.0}},
     "l_min": {"flow_l_min": 0.05, "density_kg_m3": 1000.0, "cp_J_kgK": 4000.0},
     **{key: {key: "flow", "density_kg_m3": 1.2, "cp_J_kgK": 1e5 if "l_min" in key else 3e3} for key in FLOW_INPUTS},
-    **{
-        f"{key} backwards": {
-            key: "turning",
-            "density_kg_m3": 1.2,
-            "cp_J_kgK": 2e4 if "l_min" in key else 600.0,
-            "backwards_from": "far",
-        }
-        for key in FLOW_INPUTS
-    },
+    "backwards": {"flow_l_min_input": "turning", "density_kg_m3": 1.2, "cp_J_kgK": 2e4, "backwards_from": "far"},
 }
 VARIES = {"flow_l_min_input": "turning"}
 CIRCUITS = {
@@ -141,18 +125,13 @@ CIRCUITS = {
     "two walls": circuit(
         passes=[{"wall": {"housing": 0.6, "flange": 0.4}, "width_mm": 20, "height_mm": 6, "length_m": 1.2}]
     ),
-    **{
-        f"open, {name}": circuit(coolant=name if name in PURE else {"name": name, "volume_percent": 40.0})
-        for name in (*PURE, *MIXED)
-    },
+    "open, water": circuit(coolant="water"),
+    "open, by volume": circuit(coolant={"name": "propylene glycol", "volume_percent": 40.0}),
     **{
         f"closed, {name}": closed() | {"reservoir": {**closed()["reservoir"], "arrangement": name}}
         for name in ARRANGEMENTS
     },
-    **{
-        f"closed, either way, {name}": closed(**VARIES) | {"reservoir": {**closed()["reservoir"], "arrangement": name}}
-        for name in ARRANGEMENTS
-    },
+    "closed, either way": closed(**VARIES),
 }
 
 
@@ -218,19 +197,6 @@ def test_heat_is_conserved(data):
 
 
 @pytest.mark.parametrize("data", EACH)
-def test_the_tangent_is_the_difference(data):
-    """On the same steps; so small a step that hardly any crosses a corner of a table, and rounding is 1e-7 K."""
-    net, h = read_network(data), 1e-5
-    rows = [net.place(node).mean for node in net.states]
-    (parameter,) = net.parameters
-    run = simulate(net, RECORD, None, rows, [parameter])
-    up, down = (simulate(net, RECORD, {parameter.name: np.exp(k * h)}, rows, steps=run.steps).y for k in (1, -1))
-    dy = run.dy[:, :, 0]
-    assert np.abs(dy).max() > 1e-4
-    assert_allclose(dy, (up - down) / (2 * h), atol=1e-5 * np.abs(dy).max() + 3e-7)
-
-
-@pytest.mark.parametrize("data", EACH)
 def test_at_multiplier_zero_it_is_not_there(data):
     """To the bit; what a measured loss leaves out for the model goes with it."""
     net, bare = read_network(data), read_network(document())
@@ -275,25 +241,3 @@ def test_circuits_conserve_heat(name):
     if closes:
         loop = sum(x for stream, x in heat.through.items() if stream.startswith("stream:"))
         assert np.abs(loop).max() < 1e-9 * heat.injected["loss:heat"].max()
-
-
-@pytest.mark.parametrize("name", CIRCUITS)
-def test_the_tangents_of_a_circuit_are_differences(name):
-    """Of its flow, its films, its exchanger and the capacity of its first cell; all at once, on the same steps.
-
-    So small a step that no table's corner is crossed; rounding is then 1e-7 K. The first cell of an open circuit has
-    the least of them: it warms the liquid by 6e-3 K.
-    """
-    closes, h = "reservoir" in CIRCUITS[name], 1e-6
-    net = circuit_network(CIRCUITS[name] | {"prior_sd": 0.1, "film_prior_sd": 0.2}, closes)
-    exchangers = [(x.name, 1.0) for x in net.links if x.name.startswith("exchanger:")]
-    more = [Parameter("cell", (("capacity:water.1.1", 1.0),)), Parameter("exchanger", tuple(exchangers))]
-    net = net.extended(parameters=more if exchangers else more[:1])
-    assert [p.name for p in net.parameters[:2]] == ["circuit.water", "film.water"]
-    assert bool(exchangers) == closes
-    rows, record = [net.place(node).mean for node in net.states], circuit_record(net)
-    run = simulate(net, record, None, rows, net.parameters)
-    for parameter, dy in zip(net.parameters, np.moveaxis(run.dy, 2, 0), strict=True):
-        up, down = (simulate(net, record, {parameter.name: np.exp(k * h)}, rows, steps=run.steps).y for k in (1, -1))
-        assert np.abs(dy).max() > 5e-3, parameter.name
-        assert_allclose(dy, (up - down) / (2 * h), atol=1e-6 * np.abs(dy).max() + 3e-7, err_msg=parameter.name)

@@ -50,8 +50,7 @@ def test_heat_into_the_oil_is_what_it_carries_off(net):
     assert 5 / 6e4 * middle.rho * middle.cp * rise == pytest.approx(1500.0, rel=2e-3)
 
 
-@pytest.mark.parametrize("flow", [2.0, 4.0, 8.0])
-@pytest.mark.parametrize("T", [60.0, 80.0, 100.0])
+@pytest.mark.parametrize(("flow", "T"), [(2.0, 100.0), (8.0, 60.0)])
 def test_the_film_follows_flow_and_temperature_together(net, flow, T):
     """Onto what leaves one of two cells: (e^N - 1) / N of the correlation, called directly."""
     (link,) = [x for x in net.links if x.name == "film:spray.rear.1:rear"]
@@ -67,12 +66,6 @@ def test_oil_too_cold_for_its_jets_says_so_with_value_and_range(net):
         steady(net, {"flow": 3.0}, {"oil": 20.0})
 
 
-def test_nozzles_share_the_flow_by_their_sections_and_lose_its_pressure_in_themselves():
-    wide, at = oiled(REAR, {**FRONT, "nozzles": 16}), {"flow": np.array([5.0])}
-    rates = {x.name.rpartition(".")[2]: coefficient(x.law, at, 80.0, 0.0) for x in wide.links if x.kind == "stream"}
-    assert rates["front"] == pytest.approx(2 * rates["rear"], rel=2e-3)
-
-
 def test_a_bore_is_a_round_duct_and_drips_have_no_jets():
     h, info = film_in(Bore(0.012, 0.2), 2 / 6e4, ATF(80.0))
     Re = 4 * (2 / 6e4) / (np.pi * 0.012 * ATF(80.0).nu)
@@ -81,8 +74,6 @@ def test_a_bore_is_a_round_duct_and_drips_have_no_jets():
     assert h == pytest.approx((3.66 + 0.065 * X / (1 + 0.04 * X ** (2 / 3))) * ATF(80.0).k / 0.012)
     dripping = Nozzles(8, 1.5e-3, 0.03, 0.06, drip=True)
     assert film_in(dripping, 2.5 / 6e4, ATF(80.0))[0] < film_in(Nozzles(8, 1.5e-3, 0.03, 0.06), 2.5 / 6e4, ATF(80.0))[0]
-    through = oiled(REAR, FRONT, {"wall": "rear", "branch": "rear", "diameter_mm": 12, "length_m": 0.2})
-    assert "film:spray.rear.2:rear" in {x.name for x in through.links}
 
 
 @pytest.mark.parametrize("surface", ["disc", "shaft"])
@@ -101,7 +92,6 @@ def test_a_rotor_end_in_oil_has_the_film_of_the_oil_at_its_own_temperature(surfa
     [
         ({"nozzles": 0}, "nozzles = 0"),
         ({"nozzles": 2.5}, "whole number"),
-        ({"nozzle_mm": "wide"}, "nozzle_mm"),
         ({"area_m2": None}, "area_m2"),
         ({"width_mm": 20}, "unknown key 'width_mm'"),
         ({"drip": "yes"}, "true or false"),

@@ -72,12 +72,10 @@ def test_the_documented_network_fits(example):
 
 SLIPS = {
     "unknown key": lambda d: d["links"]["winding-stator"].update(colour=1),
-    "unknown section": lambda d: d.update(link={}),
     "negative": lambda d: d["nodes"]["stator"].update(C_J_K=-5.0),
     "text for a number": lambda d: d["nodes"]["stator"].update(C_J_K="5616"),
     "loss class": lambda d: d["losses"]["copper"].update(kind="coper"),
     "one end": lambda d: d["links"]["winding-stator"].update(between=["winding"]),
-    "no name": lambda d: d["network"].pop("name"),
 }
 
 

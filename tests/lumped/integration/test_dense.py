@@ -32,7 +32,7 @@ def matrices(n, dominant):
 
 
 @pytest.mark.parametrize("dominant", [True, False], ids=["strong diagonal", "columns are swapped"])
-@pytest.mark.parametrize("n", [2, 3, 4, 5, 8, 13, 31, 64])
+@pytest.mark.parametrize("n", [2, 5, 13, 64])
 def test_solutions_are_numpys(n, dominant):
     G, d = matrices(n, dominant)
     order, structure = least_fill(G != 0.0)

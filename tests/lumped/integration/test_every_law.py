@@ -72,13 +72,6 @@ def test_every_law_has_a_case():
 
 
 @pytest.mark.parametrize("law", LAWS, ids=NAMES)
-def test_a_link_gives_at_one_end_what_it_takes_at_the_other(law):
-    heat = balance(built(linked(law)), RECORD)
-    assert np.abs(heat.through["law"]).max() > 0.0
-    assert np.abs(heat.residual).max() < CLOSES
-
-
-@pytest.mark.parametrize("law", LAWS, ids=NAMES)
 def test_two_bodies_alone_keep_their_heat_and_the_warmer_one_cools(law):
     """By the temperatures of a run alone. Where the coefficient is positive throughout, they meet and do not cross."""
     net = bare_network("alone", {"a": 300.0, "b": 500.0}, ("ambient",))
@@ -91,15 +84,6 @@ def test_two_bodies_alone_keep_their_heat_and_the_warmer_one_cools(law):
     if np.min(law.factor(inputs(TIME))) >= 0.0:
         assert np.all(np.diff(T[:, 0]) <= WRONG)
         assert np.all(T[:, 0] >= T[:, 1] - WRONG)
-
-
-@pytest.mark.parametrize("law", LOSSES, ids=kinds(LOSSES))
-def test_a_loss_is_found_again(law):
-    heat = balance(built(injected(law)), RECORD)
-    assert np.abs(heat.residual).max() < CLOSES
-    if isinstance(law.temperature, Constant):
-        declared, unsure = declared_heat(law)
-        assert_allclose(heat.injected["law"][-1], declared, rtol=1e-3, atol=unsure)
 
 
 def declared_heat(law):
@@ -179,7 +163,7 @@ def test_a_temperature_law_has_its_limits(law, hot, cold, value):
     assert temperature_value(law, hot, cold) == pytest.approx(value, rel=1e-12)
 
 
-@pytest.mark.parametrize("watts", [-30.0, -1.0, 1e-3, 1.0, 40.0, 300.0])
+@pytest.mark.parametrize("watts", [-30.0, 1e-3, 300.0])
 @pytest.mark.parametrize("temperature", TEMPERATURES, ids=lambda law: type(law).__name__)
 def test_the_compiled_law_is_the_law(temperature, watts):
     """A node rests where g (T - 20) is the heat; the kernel rounds the corner of a power at equal temperatures."""

@@ -9,7 +9,7 @@ from lumped.declarations.loss_tables import loss_laws
 from lumped.schemas.reader import Table
 from lumped.sources.layer_loss import MU_0, RESISTIVITY, by_dowell, dowell, from_map
 from lumped.sources.loss_laws import CopperLoss
-from lumped.transfer.terms_value import coefficient, loss_slope
+from lumped.transfer.terms_value import coefficient
 
 COPPER = CopperLoss(0.01, ("current_A",), 3.0)
 HEIGHT, SHARE, POLE_PAIRS = 2.9e-3, 0.8, 4
@@ -33,15 +33,14 @@ def diffusion(x, layer, cells=2000):
     return float(np.sum(np.abs(np.diff(H) / d) ** 2) * (z[1] - z[0]))
 
 
-@pytest.mark.parametrize("layers", [1, 2, 4, 6, 8])
+@pytest.mark.parametrize("layers", [1, 6])
 def test_layers_add_up_to_dowells_total(layers):
     x = np.array([0.05, 0.3, 1.0, 2.0, 5.0, 15.0])
     mean = np.mean([dowell(x, m) for m in range(1, layers + 1)], axis=0)
     assert_allclose(mean, total(x, layers), rtol=1e-12)
 
 
-@pytest.mark.parametrize("layer", [1, 3, 6])
-@pytest.mark.parametrize("x", [0.4, 1.3, 3.0])
+@pytest.mark.parametrize(("layer", "x"), [(1, 3.0), (3, 0.4), (6, 1.3)])
 def test_a_layer_is_the_diffusion_equation_solved(layer, x):
     assert dowell(x, layer) == pytest.approx(diffusion(x, layer, 400), rel=1e-3)  # 400 cells, second order: 5e-5 x^2
 
@@ -52,15 +51,7 @@ def test_low_frequency_is_direct_current_and_adds_as_the_fourth_power():
         assert dowell(0.05, m) - 1.0 == pytest.approx(0.05**4 * (4 / 45 + m * (m - 1) / 3), rel=2e-3)
 
 
-def test_proximity_grows_as_the_square_of_twice_the_layer_less_one():
-    x = 1.7
-    skin = x / 2 * (np.sinh(x) + np.sin(x)) / (np.cosh(x) - np.cos(x))
-    parts = [dowell(x, m) - skin for m in range(1, 7)]
-    assert_allclose(np.array(parts) / parts[0], [(2 * m - 1) ** 2 for m in range(1, 7)], rtol=1e-12)
-
-
-@pytest.mark.parametrize("T", [-40.0, 20.0, 95.0, 180.0])
-@pytest.mark.parametrize("speed", [300.0, 2730.0, 9000.0, 16000.0])
+@pytest.mark.parametrize(("speed", "T"), [(300.0, 95.0), (2730.0, -40.0), (16000.0, 180.0)])
 def test_the_law_follows_speed_and_its_own_temperature(speed, T):
     """Within 0.3 % of the whole: what straight lines leave between 200 sizes and 19 temperatures."""
     resistivity = RESISTIVITY * (1.0 + COPPER.alpha * (T - 20.0))
@@ -73,11 +64,6 @@ def test_the_law_follows_speed_and_its_own_temperature(speed, T):
     assert copper + coefficient(law, inputs, T, 0.0) == pytest.approx(copper * float(dowell(x, 6)), rel=3e-3)
 
 
-def test_at_rest_nothing_is_added():
-    inputs = {"current_A": np.array([100.0]), "speed_rpm": np.array([0.0])}
-    assert abs(coefficient(by_dowell(COPPER, "speed_rpm", 4, HEIGHT, SHARE, 6), inputs, 20.0, 0.0)) < 1e-3 * 300.0
-
-
 def test_a_map_of_dowells_factors_is_dowell():
     law = by_dowell(COPPER, "speed_rpm", POLE_PAIRS, HEIGHT, SHARE, 5)
     speeds = np.linspace(0.0, 16000.0, 81)
@@ -88,19 +74,9 @@ def test_a_map_of_dowells_factors_is_dowell():
         assert coefficient(mapped, inputs, T, 0.0) == pytest.approx(coefficient(law, inputs, T, 0.0), rel=0.01)
 
 
-def test_hot_thick_bars_lose_more_and_thin_ones_less():
-    """Over the skin depth loss follows the root of resistivity, under it the inverse."""
-    thick = by_dowell(COPPER, "speed_rpm", POLE_PAIRS, 20e-3, SHARE, 1)
-    at = {"speed_rpm": np.array([16000.0])}
-    assert loss_slope(thick.temperature, 100.0, at) > 0.0
-    thin = by_dowell(COPPER, "speed_rpm", POLE_PAIRS, 1e-3, SHARE, 1)
-    assert loss_slope(thin.temperature, 100.0, at) < 0.0
-
-
 FAULTS = {
     "no rise": ({"at_speed": [0, 0], "factors": [1, 2]}, "at_speed rising"),
     "one short": ({"at_speed": [0, 10], "factors": [1]}, "one factor per speed"),
-    "cooling": ({"at_speed": [0, 10], "factors": [1, -2]}, "factors"),
     "no bars": ({"pole_pairs": 4}, "bar_height_mm"),
     "nothing": ({}, "coefficients"),
 }

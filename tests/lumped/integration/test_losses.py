@@ -12,7 +12,7 @@ from lumped.integration.balance import audit
 from lumped.integration.signals import Signals
 from lumped.integration.simulate import Record, simulate
 from lumped.sources.inverter import InverterLoss, PulseLoss
-from lumped.sources.loss_laws import BrushLoss, CopperLoss, EddyLoss, IronLoss, PowerLoss, RippleLoss
+from lumped.sources.loss_laws import IronLoss, RippleLoss
 from lumped.sources.loss_map import MapLoss
 from lumped.transfer.laws import Law
 
@@ -26,21 +26,6 @@ def test_iron_follows_frequency_and_flux_exponents():
     assert_allclose(steinmetz.factor(AT), [0.0, 100.0, 100 * 2**1.5], rtol=1e-12)
 
 
-def test_copper_at_speed_has_its_ac_share():
-    copper = CopperLoss(0.01, ("current_A",))
-    eddy = EddyLoss(copper, (1.0, 0.0, 0.4), "speed_rpm", 2000.0)
-    assert_allclose(copper.factor(AT) + eddy.factor(AT), [0.0, 0.01 * 1e4 * 1.1, 0.01 * 4e4 * 1.4], rtol=1e-12)
-
-
-def test_brushes_drop_and_rub():
-    assert_allclose(BrushLoss(2.0, "current_A", 250.0, "speed_rpm", 1000.0).factor(AT), [0.0, 450.0, 900.0])
-
-
-def test_stray_loss_is_a_share_of_the_power():
-    law = PowerLoss(((1000.0, (("current_A", 511.0, 2.0),)),))
-    assert law.factor({"current_A": 511.0}) == pytest.approx(1000.0)
-
-
 def test_ripple_is_the_mean_square_of_the_triangle():
     """Sawtooth current between -dI/2 and dI/2 over one period, sampled finely; none at no voltage and at full."""
     law = RippleLoss(300.0, "voltage_V", 2e-3, 4000.0, 0.05)
@@ -52,23 +37,6 @@ def test_ripple_is_the_mean_square_of_the_triangle():
         rms = np.trapezoid((i - np.trapezoid(i, t) / T) ** 2, t) / T
         assert law.factor({"voltage_V": volts}) == pytest.approx(0.05 * rms, rel=1e-3)
     assert_allclose(law.factor({"voltage_V": np.array([0.0, 300.0])}), 0.0, atol=1e-12)
-
-
-GRID = MapLoss((0.0, 1000.0, 3000.0), (0.0, 50.0, 100.0), ((0, 1, 4), (10, 20, 40), (60, 90, 150)))
-
-
-def test_a_map_gives_its_points_and_is_bilinear_between():
-    assert_allclose(
-        GRID.factor({"speed_rpm": np.array([0.0, 1000.0, 3000.0]), "torque_Nm": np.array([100.0, -50.0, 100.0])}),
-        [4.0, 20.0, 150.0],
-    )
-    middle = GRID.factor({"speed_rpm": 2000.0, "torque_Nm": 75.0})
-    assert middle == pytest.approx((20 + 40 + 90 + 150) / 4)
-
-
-def test_a_map_left_behind_warns_with_value_and_range():
-    with pytest.warns(RangeWarning, match=r"speed_rpm = 4000 outside 0 to 3000"):
-        assert GRID.factor({"speed_rpm": 4000.0, "torque_Nm": 0.0}) == pytest.approx(60.0)
 
 
 class Seen(Law):
@@ -85,7 +53,7 @@ class Seen(Law):
         return np.abs(x) ** 1.7
 
 
-@pytest.mark.parametrize("modulation", [0.1, 0.4, 0.8, 1.0, 1.15])
+@pytest.mark.parametrize("modulation", [0.1, 0.8, 1.15])
 def test_pulses_make_the_ripple_that_their_flux_shows(modulation):
     """Space-vector pulses against a triangle, 400 angles of 1000 instants: flux of a phase less its mean, over L."""
     angle = 2 * np.pi * (np.arange(400) + 0.5)[:, None] / 400 - 2 * np.pi / 3 * np.arange(3)

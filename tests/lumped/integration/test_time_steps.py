@@ -11,8 +11,7 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 from random_networks import admissible, built, machine, reference
-from scipy.linalg import expm
-from small_networks import C1, C2, G2A, G12, two_masses
+from small_networks import two_masses
 
 from geom.errors import ThermoscopeError
 from lumped.declarations.network import read_network
@@ -25,7 +24,6 @@ from lumped.transfer.laws import Fixed, InputPower, Linear
 PAGE = Path(__file__).parents[3] / "docs" / "network-toml.md"
 DOCUMENTED = read_network(tomllib.loads(re.findall(r"```toml\n(.*?)```", PAGE.read_text(), re.S)[0]))
 PRINCIPLE = 0.01  # K, beyond what is allowed
-ROUNDING = 1e-9  # K
 CURVED = (5028, 5069, 5075)  # whose error is what parabolas through the inputs miss, not what the steps do
 SEEDS = range(1000, 1012)  # benchmarks/peers/time_steps.py takes a thousand
 
@@ -50,43 +48,13 @@ def finer(record, parts):
     return Record(time, between(record.inputs), between(record.boundaries), record.initial)
 
 
-@pytest.mark.parametrize("before", [0.0, 0.1])
-@pytest.mark.parametrize("step", [10.0, 30.0, 60.0])
+@pytest.mark.parametrize(("before", "step"), [(0.0, 10.0), (0.0, 60.0), (0.1, 30.0)])
 def test_a_pump_that_starts_leaves_no_node_colder_than_its_surroundings(before, step):
     record = pump(before, step)
     z = simulate(DOCUMENTED, record, keep_states=True).z
     assert z.min() > 20.0 - PRINCIPLE
     assert z.max() < 40.0 + PRINCIPLE  # all losses but a bearing's at rest are none
     assert_allclose(z, simulate(DOCUMENTED, finer(record, 60), keep_states=True).z[::60], atol=0.02)
-
-
-def test_an_air_cell_on_a_fan_that_starts_stays_between_its_neighbours():
-    net = bare_network("fan", {"winding": 5000.0, "air": 18.0}, ("ambient",))
-    links = [
-        node_link(net, "film", "film", "winding", "air", InputPower(5.0, (("speed_rpm", 1000.0, 0.8),))),
-        node_link(net, "out", "film", "air", "ambient", InputPower(80.0, (("speed_rpm", 1000.0, 1.0),))),
-    ]
-    time = np.arange(0.0, 600.0, 30.0)
-    speed = np.where(time < 200.0, 0.0, 3000.0)
-    record = Record(time, {"speed_rpm": speed}, {"ambient": 20.0}, {"winding": 51.0, "air": 45.0})
-    z = simulate(net.extended(links), record, keep_states=True).z
-    assert z[:, 1].min() > 20.0 - PRINCIPLE
-    assert z[:, 1].max() < 51.0 + PRINCIPLE
-
-
-def test_a_cell_of_a_tenth_of_a_joule_sees_the_last_of_a_flow_that_falls():
-    """Its time constant is a hundredth of the sample: what a parabola misses there is not averaged out."""
-    net = bare_network("cell", {"wall": 1e4, "cell": 0.1}, ("inlet",))
-    links = [
-        node_link(net, "film", "film", "wall", "cell", InputPower(3.0, (("flow_l_min", 4.0, 0.8),))),
-        node_link(net, "out", "film", "cell", "inlet", InputPower(60.0, (("flow_l_min", 1.0, 1.0),))),
-        node_link(net, "leak", "film", "cell", "inlet", Fixed(1.0)),
-    ]
-    flow = {"flow_l_min": np.array([7.586, 0.0142, 4.06])}
-    record = Record(np.array([0.0, 3.62, 7.24]), flow, {"inlet": 20.0}, {"wall": 80.0, "cell": 40.0})
-    z = simulate(net.extended(links), record, keep_states=True).z
-    exact = simulate(net.extended(links), finer(record, 500), keep_states=True).z[::500]
-    assert_allclose(z, exact, atol=0.03)
 
 
 @pytest.mark.parametrize(("seed", "most"), [*((seed, 10) for seed in SEEDS), *((seed, 40) for seed in CURVED)])
@@ -108,7 +76,7 @@ def test_a_random_network_is_where_radau_has_it(seed, most):
     assert x.max() < high + PRINCIPLE
 
 
-@pytest.mark.parametrize("seed", SEEDS[:8])
+@pytest.mark.parametrize("seed", SEEDS[:4])
 def test_the_tangents_of_a_random_network_are_its_finite_differences(seed):
     """On the steps of the run, whose choice is not differentiated."""
     network, record = built(machine(seed, 8))
@@ -118,19 +86,6 @@ def test_the_tangents_of_a_random_network_are_its_finite_differences(seed):
     for k, parameter in list(enumerate(network.parameters))[:: max(1, len(network.parameters) // 4)]:
         up, down = (simulate(network, record, {parameter.name: np.exp(s)}, rows, steps=run.steps).y for s in (h, -h))
         assert_allclose(run.dy[:, :, k], (up - down) / (2 * h), atol=1e-6 * largest)
-
-
-def test_the_time_error_is_the_error():
-    """On two masses, whose exact course is an exponential of their matrix."""
-    time = np.arange(0.0, 3601.0, 600.0)
-    network = two_masses()
-    rows = [network.place("winding").mean, network.place("core").mean]
-    run = simulate(network, Record(time, {}, {"ambient": 20.0}), rows=rows)
-    A = np.array([[-G12, G12], [G12, -G12 - G2A]]) / np.array([[C1], [C2]])
-    rest = np.array([20.0 + 100.0 / G12 + 100.0 / G2A, 20.0 + 100.0 / G2A])
-    exact = np.array([rest + expm(t * A) @ (20.0 - rest) for t in time])
-    error = np.abs(run.y - exact).max(axis=0)
-    assert_allclose(run.time_error_K, error, rtol=0.1)
 
 
 def test_time_errors_of_two_runs_are_worked_out_at_once():
@@ -162,15 +117,8 @@ def test_samples_do_not_set_the_steps_where_inputs_are_smooth():
     assert_allclose(fine.z[::10], coarse.z, atol=0.01)
 
 
-def test_inputs_that_move_at_every_sample_keep_every_sample():
-    time = np.arange(0.0, 301.0)
-    current = {"current_A": 10.0 + np.random.default_rng(0).standard_normal(time.size)}
-    network = two_masses(InputPower(100.0, (("current_A", 10.0, 2.0),)))
-    assert simulate(network, Record(time, current, {"ambient": 20.0})).steps.knot.size >= 300
-
-
 def test_a_fit_looks_at_a_drive_cycle_in_fewer_steps_than_it_was_recorded_in():
-    """Recorded each half second, looked at each twentieth: heat is kept, and fits ask for what drives them once."""
+    """Recorded each half second, looked at each twentieth: heat is kept."""
     recorded = np.arange(0.0, 2000.5, 0.5)
     noise = np.random.default_rng(1).standard_normal(recorded.size)
     current = 10.0 + 6.0 * np.sin(recorded / 7.0) + 0.5 * noise
@@ -184,13 +132,6 @@ def test_a_fit_looks_at_a_drive_cycle_in_fewer_steps_than_it_was_recorded_in():
     every, fit = run(FIT._replace(merged=0.0), 20.0), run(FIT, 20.0)
     assert fit.steps.knot.size < 0.6 * every.steps.knot.size
     assert_allclose(fit.z, every.z, atol=0.02)
-    signals = Signals.recorded({"current_A": current}, recorded, time)
-    warm, cold = (
-        simulate(network, Record(time, signals, {"ambient": air}), precision=FIT, keep_states=True).z
-        for air in (20.0 + time / 100.0, 0.0)
-    )
-    assert_allclose(warm, run(FIT, 20.0 + time / 100.0).z, rtol=1e-12)
-    assert_allclose(cold, run(FIT, 0.0).z, rtol=1e-12)
 
 
 def test_a_run_goes_on_where_another_ended():
@@ -227,8 +168,7 @@ def test_a_node_that_is_heated_beyond_all_is_no_runaway():
         simulate(net, Record(np.arange(0.0, 2000.0, 60.0), {}, {"ambient": 20.0}))
 
 
-@pytest.mark.parametrize("C", [1e-9, 1e-6, 1e-3])
-@pytest.mark.parametrize("step", [1e-6, 1.0, 36000.0])
+@pytest.mark.parametrize(("C", "step"), [(1e-9, 36000.0), (1e-6, 1.0), (1e-3, 1e-6)])
 def test_any_capacity_at_any_sample_is_right(C, step):
     """A capacity next to none follows its neighbours; a sample of ten hours is one of many steps."""
     net = bare_network("tiny", {"part": 1000.0, "air": C}, ("ambient",))

@@ -18,35 +18,11 @@ from lumped.transfer.laws import Fixed, InputPower, Linear
 MOTOR = PMMachine(4, 4.67e-3, 0.1e-3, 0.25e-3, 0.07, current_limit=400.0, voltage_limit=200.0)
 
 
-def test_least_current_is_least_along_the_torque_curve():
-    """Any other i_d that gives the torque needs more current."""
-    i_d, i_q = MOTOR.currents(100.0, 1000.0)
-    assert MOTOR.torque(i_d, i_q) == pytest.approx(100.0, rel=1e-9)
-    for other in (i_d - 5.0, i_d + 5.0):
-        q = 100.0 / MOTOR.torque(other, 1.0)
-        assert np.hypot(other, q) > np.hypot(i_d, i_q)
-
-
 def test_without_saliency_the_current_is_torque_over_flux():
     round_rotor = PMMachine(4, 4.67e-3, 0.2e-3, 0.2e-3, 0.07, 400.0, 200.0)
     i_d, i_q = round_rotor.currents(np.array([-80.0, 0.0, 80.0]), 1000.0)
     assert_allclose(i_d, 0.0, atol=1e-9)
     assert_allclose(i_q, np.array([-80.0, 0.0, 80.0]) / (6 * 0.07), atol=1e-6)
-
-
-def test_beyond_base_speed_the_field_is_weakened_at_the_same_torque():
-    i_d, i_q = MOTOR.currents(40.0, 9000.0)
-    assert MOTOR.torque(i_d, i_q) == pytest.approx(40.0, rel=1e-6)
-    assert MOTOR.voltage(i_d, i_q, 9000.0) == pytest.approx(200.0, rel=1e-6)
-    assert i_d < MOTOR.currents(40.0, 1000.0)[0]
-
-
-def test_limits_are_kept_everywhere_on_the_map():
-    torque, speed = np.meshgrid(np.linspace(0, 400, 41), np.linspace(0, 12000, 41))
-    i_d, i_q = MOTOR.currents(torque, speed)
-    assert np.hypot(i_d, i_q).max() <= 400.0 * (1 + 1e-9)
-    assert MOTOR.voltage(i_d, i_q, speed).max() <= 200.0 * (1 + 1e-6)
-    assert np.all(MOTOR.torque(i_d, i_q) <= torque + 1e-6)
 
 
 def random_machine(rng):
@@ -113,12 +89,6 @@ def test_electrical_power_is_mechanical_power_and_copper(torque, speed):
     assert MOTOR.power(i_d, i_q, speed, 120.0, 90.0) == pytest.approx(mechanical + copper, rel=1e-12)
 
 
-def test_warm_magnets_need_more_current():
-    assert MOTOR.flux(120.0) == pytest.approx(0.07 * (1 - 0.11))
-    cold, hot = (np.hypot(*MOTOR.currents(100.0, 1000.0, 20.0, T)) for T in (20.0, 120.0))
-    assert hot > 1.04 * cold
-
-
 def pm_network():
     net = bare_network("pm", {"winding": 3700.0, "stator": 5600.0, "magnet": 5300.0}, ("ambient",))
     links = [
@@ -146,13 +116,6 @@ def test_coupled_run_ends_where_a_steady_solution_stands():
     assert found.run.z[-1, :3] == pytest.approx(rest.z[:3], abs=0.01)
     again = MOTOR.currents(100.0, 2000.0, rest["winding"], rest["magnet"])
     assert (end["id_A"], end["iq_A"]) == pytest.approx(tuple(float(x) for x in again), rel=1e-4)
-
-
-def test_residuals_fall_from_round_to_round():
-    net, time = pm_network(), np.linspace(0.0, 5000.0, 101)
-    drive = pm_drive(MOTOR, np.full(101, 120.0), np.full(101, 2000.0))
-    found = coupled(net, Record(time, {}, {"ambient": 30.0}), drive, {"winding": "winding", "magnet": "magnet"})
-    assert np.all(np.diff(found.residuals) < 0)
 
 
 def test_runaway_is_an_error_that_shows_the_last_changes():

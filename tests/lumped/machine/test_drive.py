@@ -27,12 +27,6 @@ def test_ratings_give_the_published_constants():
     assert MACHINE.voltage(511.0, 1000.0) - MACHINE.R * 511.0 == pytest.approx(195.7, abs=0.05)
 
 
-def test_curves_pass_through_the_rated_point():
-    assert MACHINE.torque(511.0) == pytest.approx(955.0, rel=1e-3)
-    assert MACHINE.speed(511.0, 220.0) == pytest.approx(1000.0)
-    assert MACHINE.current(MACHINE.torque(300.0)) == pytest.approx(300.0)
-
-
 @pytest.fixture(scope="module")
 def climb():
     time = np.arange(0.0, 301.0)
@@ -90,7 +84,7 @@ def test_a_vehicle_with_brakes_stops_and_takes_the_current_of_its_profile(share)
     assert np.sqrt(np.mean(without.current_A**2)) < 0.9 * exact
 
 
-@pytest.mark.parametrize("share", [0.0, 0.5, 1.0])
+@pytest.mark.parametrize("share", [0.0, 1.0])
 def test_energy_from_the_supply_is_copper_brakes_and_load(share):
     """At rest at both ends; 0.1 % for the 0.5 s at which the load is sampled."""
     vehicle = replace(VEHICLE, regeneration=share)

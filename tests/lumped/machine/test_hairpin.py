@@ -13,7 +13,6 @@ from geom.description.materials import material
 from geom.machine_file import machine_from
 from lumped.machine.hairpin import insulation
 from lumped.machine.loss_sources import checked_losses, loss_watts
-from lumped.machine.zones import motor_zones
 from lumped.sources.layer_loss import dowell
 
 MACHINE = load_machine("ipmsm-48s8p-hairpin")
@@ -76,10 +75,6 @@ def test_a_map_gives_every_layer_its_own_factors():
 def test_a_map_with_a_layer_missing_is_refused():
     with pytest.raises(InputError, match=r"\[losses.copper\].*factors"):
         checked_losses(changed(at_speed=[0, 5000], factors=[[1.0, 2.0]]))
-
-
-def test_teeth_and_back_are_zones_of_the_core():
-    assert {"stator.core.teeth", "stator.core.back"} <= set(motor_zones(MACHINE))
 
 
 @BilinearForm

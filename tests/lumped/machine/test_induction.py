@@ -61,15 +61,6 @@ def test_limits_are_kept_and_the_flux_is_the_rated_one_where_they_allow_it():
     assert_allclose(at.torque[slow], torque[slow], rtol=1e-9)
 
 
-@pytest.mark.parametrize("speed", [0.0, 1000.0, 1500.0, 2500.0, 5000.0, -2500.0])
-@pytest.mark.parametrize("way", [1.0, -1.0])
-def test_the_most_torque_is_that_of_a_grid_over_both_currents(speed, way):
-    d, q = np.meshgrid(np.geomspace(1e-2, 12.5, 1200), way * np.linspace(0.0, 60.0, 1200))
-    at = MOTOR.operation(d, q, speed, *WARM)
-    best = np.max(way * at.torque[(at.voltage <= 325.0) & (np.hypot(d, q) <= 60.0)])
-    assert way * MOTOR.torque(*MOTOR.currents(way * 1e4, speed, *WARM)) == pytest.approx(best, rel=5e-3)
-
-
 def test_random_machines_reach_the_torque_of_the_grid():
     """Driving and braking; the torque of a machine that brakes has a second maximum where its field hardly turns."""
     rng = np.random.default_rng(48)

@@ -16,7 +16,6 @@ from lumped.circuits.hydraulics import parallel_shares, pressure_drop
 from lumped.integration.steady import steady
 from lumped.machine.air import ways_of
 from lumped.machine.films import surroundings
-from lumped.machine.motor import operating_point
 from lumped.model.network import Network
 from lumped.transfer.properties import air
 from lumped.transfer.terms_value import coefficient
@@ -72,7 +71,7 @@ def test_laminar_ducts_by_hand(machine):
     assert pressure_drop(machine.features.ducts["air.ducts"], 12 * each, warm) == pytest.approx(by_hand, rel=1e-3)
 
 
-@pytest.mark.parametrize(("times", "outside"), [(0.0, 20.0), (0.05, 20.0), (0.3, -30.0), (1.0, 20.0), (4.0, 60.0)])
+@pytest.mark.parametrize(("times", "outside"), [(0.0, 20.0), (0.3, -30.0), (4.0, 60.0)])
 def test_the_split_follows_the_flow(machine, network, times, outside):
     """Equal pressure drop at every flow, friction laminar or turbulent; what leaves the ways is all that came in."""
     flow, inside = max(times * 138.0, 1e-6), air(outside + 20.0)
@@ -86,11 +85,6 @@ def test_the_split_follows_the_flow(machine, network, times, outside):
     for way, share in zip(machine.features.ducts, split, strict=True):
         assert carried[way] / carried["air.left"] == pytest.approx(0.9 * share, rel=5e-3)
     assert sum(carried[way] for way in WAYS) == pytest.approx(carried["air.left"], rel=1e-9)
-
-
-@pytest.mark.parametrize("wider", [with_ducts(24, 10.0), with_ducts(12, 14.0)], ids=["more ducts", "wider ducts"])
-def test_more_room_in_the_rotor_takes_more_air(wider):
-    assert shares_of(wider)["air.ducts"] > 1.2 * shares_of(with_ducts(12, 10.0))["air.ducts"]
 
 
 def test_without_ducts_the_rest_passes_between_the_poles():
@@ -112,31 +106,6 @@ def test_the_air_carries_off_what_the_outer_faces_do_not(machine, network):
     assert by_air > 0.3 * (by_air + by_faces), "a machine cooled by its air"
 
 
-def test_air_warms_along_its_way(network):
-    z = rest(network)
-    T = {name: at(network, z, name) for name in ("air.fan", "air.left", *WAYS, "air.right", "rotor.core")}
-    assert 20.0 < T["air.fan"] < T["air.left"] < T["air.ducts"] < T["rotor.core"]
-    assert T["air.left"] < T["air.right"]
-
-
-def test_a_duct_takes_up_what_its_walls_give_off(machine, network):
-    """share x flow x rho cp x warming in the ducts = film x wall x (rotor - air)."""
-    z = rest(network)
-    share, area = shares_of(machine)["air.ducts"], 12 * np.pi * 0.020 * 0.188
-    h = coefficients(network, POINT, z).films["rotor.core.air.ducts"]
-    taken = (
-        share
-        * air(20.0).rho
-        * air(20.0).cp
-        * 138.0
-        / 3600.0
-        * (at(network, z, "air.ducts") - at(network, z, "air.left"))
-    )
-    given = h * area * (at(network, z, "rotor.core") - at(network, z, "air.ducts"))
-    assert taken == pytest.approx(given, rel=0.01), "the mesh's wall is within 1 % of the cylinders"
-    assert 5.0 < h < 12.0, "laminar, entering: Nu between 3.66 and 9"
-
-
 def test_without_flow_the_streams_carry_nothing(machine, network):
     z = rest(network, fan_flow_m3h=0.0)
     T = at(network, z, "air.ducts")
@@ -150,10 +119,6 @@ def test_without_flow_the_streams_carry_nothing(machine, network):
 def test_a_share_of_the_gap_beyond_one_is_refused():
     with pytest.raises(InputError, match=r"gap_share = 1.2 is not possible.*from 0 to 1"):
         shares_of(with_ducts(12, 10.0, gap_share=1.2))
-
-
-def test_rated_flow_is_that_of_the_file(machine):
-    assert operating_point(machine)["fan_flow_m3h"] == pytest.approx([138.0])
 
 
 def test_imported_machine_is_stirred_by_its_largest_turning_part():

@@ -14,7 +14,7 @@ from lumped.condensation.reduction import Recipe
 from lumped.integration.balance import balance
 from lumped.integration.simulate import Record
 from lumped.integration.steady import steady
-from lumped.machine.bases import Switched, unused
+from lumped.machine.bases import unused
 
 LOAD = {"current_A": 8.0, "speed_rpm": 0.0}
 FEW = Recipe(tolerance=0.02, shifts=(), random_points=0)  # learned at the machine's own coefficients, where it is used
@@ -84,13 +84,6 @@ def test_heat_is_conserved_when_a_base_is_taken_away(both):
     assert np.abs(found.residual).max() < 1e-5  # the balance has a quadrature of its own
     assert found.power("film:foot.print:natural")[0] == 0.0
     assert found.power("film:foot.print:natural")[-1] > 0.0
-
-
-def test_footprint_moves_with_the_film_around_it(both):
-    moved = dict(next(p for p in both.parameters if p.name == "h.stator.core").targets)
-    assert {"film:foot.print:natural", "film:foot.plate.print:radiation"} <= set(moved)
-    laws = [link.law for link in both.links if isinstance(link.law, Switched)]
-    assert {law.switch for law in laws} == {"on_bench", "on_plate"}
 
 
 @pytest.mark.parametrize(

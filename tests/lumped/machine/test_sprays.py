@@ -82,11 +82,9 @@ def test_it_cools_and_its_nozzles_may_be_blocked(network):
 @pytest.mark.parametrize(
     ("change", "words"),
     [
-        ({"winding.left": {**NOZZLES, "nozzles": 0}}, "nozzles"),
         ({"winding.left": {"nozzles": 8}}, "nozzle_mm"),
         ({"winding.lft": NOZZLES}, "winding.lft"),
         ({"coolant": "milk"}, "ATF"),
-        ({"winding.left": {**NOZZLES, "fall": True}}, "fall"),
     ],
 )
 def test_a_slip_is_one_message(change, words):
