@@ -66,17 +66,13 @@ SAME = {
     "line ends of Windows": (windows, ""),
     "spaces in the header": (spaced_header, ""),
     "sensor in capitals": (lambda case: edited(case / STAND, "sigma_K = 0.4", 'sigma_K = 0.4\nsensor = "PT100"'), ""),
-    "quantity in capitals": (lambda case: edited(case / STAND, '"vehicle_speed"', '"Vehicle_Speed"'), ""),
     "constant that no law reads": (
         lambda case: edited(case / STAND, "[columns.air]", "[inputs]\npressure_bar = 1.0\n[columns.air]"),
         "no law of the model reads 'pressure_bar'",
     ),
     "open thermocouple": (cell("T_winding", 30, 1370.0), "T_winding': 1 readings of 1370 are a logger's code"),
-    "overrange": (cell("T_yoke", 30, 9999.0), "T_yoke': 1 readings of 9999"),
     "nines": (cell("T_flange", 30, -999.0), "1 readings of -999"),
-    "no answer on the bus": (cell("T_flange", 30, -127.0), "1 readings of -127"),
     "overrange of a meter": (cell("T_flange", 30, 9.9e37), "1 readings of 9.9e+37"),
-    "register": (cell("T_flange", 30, 6553.5), "1 readings of 6553.5"),
 }
 
 
@@ -105,10 +101,7 @@ def test_rows_far_apart_are_said(tmp_path):
     assert "rows are 36000 s apart, sample_s is 20 s" in " ".join(load_case(case).notes)
 
 
-@pytest.mark.parametrize(
-    ("name", "unit", "held"),
-    [("duty", "1", 0.5), ("duty", "%", 0.005), ("duty_percent", "1", 50.0), ("duty_percent", "%", 0.5)],
-)
+@pytest.mark.parametrize(("name", "unit", "held"), [("duty", "%", 0.005), ("duty_percent", "1", 50.0)])
 def test_a_share_is_held_as_its_input_is_named(tmp_path, name, unit, held):
     case = case_of(tmp_path)
     edited(case / STAND, '"vehicle_speed"\nunit = "km/h"', f'"share"\nunit = "{unit}"\ninput = "{name}"')
