@@ -4,12 +4,10 @@ import gzip
 
 import numpy as np
 import pytest
-from input_cases import case_of, changed, edited
+from input_cases import STAND, case_of, cell, changed, edited
 
 from thermoscope.case_folder.folder import load_case
 from validation.comparison.compare import compare
-
-STAND = "tests/stand.toml"
 
 
 @pytest.fixture(scope="module")
@@ -48,14 +46,6 @@ def windows(case):
 def spaced_header(case):
     file = case / "tests/stand.csv"
     file.write_text(file.read_text().replace("T_winding,T_yoke", " T_winding , T_yoke", 1))
-
-
-def cell(name, row, value):
-    return lambda case: changed(case, "stand", lambda table: table.__setitem__(name, _with(table[name], row, value)))
-
-
-def _with(column, row, value):
-    return column.where(column.index != row, value)
 
 
 SAME = {

@@ -4,18 +4,13 @@ import os
 
 import pytest
 from command_line import answered, refusal
-from input_cases import case_of, edited
+from input_cases import STAND, case_of, named, swap
 
 from thermoscope.commands.open_case import fingerprint
 
-STAND = "tests/stand.toml"
 TIME = 'time = "time_s"'
 COPPER = 'kind = "copper"\nR20_ohm = 0.02\ncurrents = ["current_A"]'
 STEP = '[[revision]]\nnumber = 1\naction = "calibrate"\neffects = []\n'
-
-
-def swap(file, old, new):
-    return lambda case: edited(case / file, old, new)
 
 
 def more(file, text):
@@ -48,10 +43,6 @@ def events(rows):
 
 def sensor(line):
     return swap(STAND, "sigma_K = 0.4", line)
-
-
-def named(name):
-    return swap("case.toml", "[tests.stand]", f'[tests."{name}"]\nfile = "tests/stand.csv"\nsheet = "{STAND}"')
 
 
 def node(name):

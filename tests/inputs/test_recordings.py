@@ -8,7 +8,7 @@ import numpy as np
 import pandas as pd
 import pytest
 from command_line import answered, refusal
-from input_cases import case_of, changed, edited
+from input_cases import case_of, cell, changed, edited
 
 from thermoscope.case_folder.folder import load_case
 from validation.comparison.compare import compare
@@ -59,14 +59,6 @@ def parquet(change=lambda table: table, **options):
     return write
 
 
-def cell(row, name, value):
-    def change(table):
-        table[name] = table[name].astype(object)
-        table.loc[row, name] = value
-
-    return lambda case: changed(case, "stand", change)
-
-
 def link(case):
     (case / STAND).unlink()
     (case / STAND).symlink_to(case / "nowhere.csv")
@@ -100,12 +92,12 @@ ENDLESS = {"beyond a double": "1e400", "infinite": "inf"}
 SOME = {name: NO_NUMBERS[name] for name in ("overload", "true", "decimal comma")}
 REFUSED = {
     **{
-        f"a cell: {k}": (cell(10, "T_flange", v), ["line 12", "T_flange", "not a number"])
+        f"a cell: {k}": (cell("T_flange", 10, v), ["line 12", "T_flange", "not a number"])
         for k, v in NO_NUMBERS.items()
     },
-    **{f"a cell: {k}": (cell(10, "T_flange", v), ["line 12", "T_flange", "infinite"]) for k, v in ENDLESS.items()},
-    **{f"a time: {k}": (cell(10, "time_s", v), ["line 12", "time_s", "test new"]) for k, v in SOME.items()},
-    **{f"a current: {k}": (cell(10, "current", v), ["line 12", "current"]) for k, v in SOME.items()},
+    **{f"a cell: {k}": (cell("T_flange", 10, v), ["line 12", "T_flange", "infinite"]) for k, v in ENDLESS.items()},
+    **{f"a time: {k}": (cell("time_s", 10, v), ["line 12", "time_s", "test new"]) for k, v in SOME.items()},
+    **{f"a current: {k}": (cell("current", 10, v), ["line 12", "current"]) for k, v in SOME.items()},
     "times in words": (
         lambda case: changed(case, "stand", lambda t: t.__setitem__("time_s", instants(t).time_s)),
         ["line 2", "time_s", "test new"],
@@ -192,7 +184,7 @@ def test_a_unit_that_the_file_says_and_the_sheet_does_not_is_said(tmp_path):
 def test_an_empty_cell_is_a_missing_reading_with_its_line(tmp_path):
     case = case_of(tmp_path)
     for row, value in enumerate(["", "   ", "NaN", "#N/A", "null"]):
-        cell(10 + row, "T_flange", value)(case)
+        cell("T_flange", 10 + row, value)(case)
     code, _, err = answered("test", "compare", case)
     assert code == 1
     assert "5 missing readings, first in line 12" in err

@@ -7,23 +7,7 @@ import tarfile
 
 import pytest
 from command_line import answered, contents
-from input_cases import case_of, changed, edited
-
-STAND = "tests/stand.toml"
-
-
-def swap(file, old, new):
-    return lambda case: edited(case / file, old, new)
-
-
-def column(name, row, value):
-    """One cell of stand.csv."""
-
-    def change(table):
-        table[name] = table[name].astype(object)
-        table.loc[row, name] = value
-
-    return lambda case: changed(case, "stand", change)
+from input_cases import STAND, case_of, cell, changed, edited, named, swap
 
 
 def whole(name, make):
@@ -89,10 +73,6 @@ def model(values):
     return lambda case: (case / "model.toml").write_text(text)
 
 
-def named(name):
-    return swap("case.toml", "[tests.stand]", f'[tests."{name}"]\nfile = "tests/stand.csv"\nsheet = "{STAND}"')
-
-
 def parameter(keys):
     extra = f'[parameters.x]\nacts_on = ["link:yoke-air"]\n{keys}\n[losses.copper]'
     return swap("network.toml", "[losses.copper]", extra)
@@ -126,7 +106,7 @@ REFUSED = {
         swap(STAND, "[columns.air]", "[columns.air]\nuse = false"),
         ["stand.toml", "ambient"],
     ),
-    "a time given twice": (column("time_s", 29, 280), ["line 31", "twice"]),
+    "a time given twice": (cell("time_s", 29, 280), ["line 31", "twice"]),
     "a long hole in an input": (
         whole("current", lambda table: table["current"].where((table.index < 50) | (table.index > 100))),
         ["stand.csv", "current"],
@@ -172,7 +152,7 @@ REFUSED = {
         lambda case: changed(case, "stand", lambda table: table.insert(7, " T_yoke", table["T_yoke"])),
         ["'T_yoke' stands twice"],
     ),
-    "last time of 1e12": (column("time_s", 299, 1e12), ["1e+12 s", "time_unit"]),
+    "last time of 1e12": (cell("time_s", 299, 1e12), ["1e+12 s", "time_unit"]),
     "time unit that leaves one sample": (
         swap(STAND, 'time = "time_s"', 'time = "time_s"\ntime_unit = "ms"'),
         ["2.99 s", "time_unit"],
@@ -205,8 +185,8 @@ REFUSED = {
         ["T_flange", "one column"],
     ),
     "sensor without end": (swap(STAND, "sigma_K = 0.4", "sigma_K = inf"), ["T_flange", "sigma_K = inf"]),
-    "reading below all cold": (column("T_flange", 10, -150), ["line 12", "-150"]),
-    "reading above all metal": (column("T_flange", 10, 5000), ["line 12", "5000"]),
+    "reading below all cold": (cell("T_flange", 10, -150), ["line 12", "-150"]),
+    "reading above all metal": (cell("T_flange", 10, 5000), ["line 12", "5000"]),
     "degC read as K": (swap(STAND, 'unit = "degC"\nplace = "winding"', 'unit = "K"\nplace = "winding"'), ["unit"]),
     "reversed clamp": (lambda case: power(case, lambda amps: -amps), ["negative", "clamp", "line"]),
     "nodes alone": (

@@ -183,13 +183,6 @@ def test_report_and_pictures_of_a_declared_network(story, thermoscope, tmp_path)
     assert {"curves-town.png", "residuals-road.png", "error.png"} <= {p.name for p in tmp_path.iterdir()}
 
 
-@pytest.mark.parametrize(("total", "says"), [(6e-14, "good to less than 0.001 K"), (0.0123, "good to 0.012 K (worst")])
-def test_what_is_exact_is_not_said_to_be_good_to_nothing(total, says):
-    from thermoscope.commands.model.error_budget import in_short
-
-    assert says in in_short({"day": [{"place": "T", "total_K": total}]}, {})
-
-
 def test_a_machine_file_is_copied_once(thermoscope, tmp_path):
     """The file of the library, byte for byte; what lies there stays."""
     from geom import library

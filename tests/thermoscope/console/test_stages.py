@@ -174,32 +174,3 @@ def test_a_case_is_remembered_for_itself(tmp_path, monkeypatch):
         monkeypatch.setattr("sys.argv", ["thermoscope", "test", "compare", case])
         with remembering("test compare", progress_bar._case()) as stages:
             assert stages.last == {"running": seconds}
-
-
-def test_what_was_built_and_kept_is_not_waited_for_again(tmp_path, monkeypatch):
-    """The second run of a case has its machine; a case with a declared network has none to check."""
-    monkeypatch.setenv("THERMOSCOPE_CACHE", str(tmp_path))
-    monkeypatch.setattr("sys.argv", ["thermoscope", "test", "compare", "case"])
-    first = {"reading": 1.0, "network": 100.0, "preparing": 2.0, "checking": 50.0, "running": 3.0}
-    with remembering("test compare", progress_bar._case()) as stages:
-        stages.took |= first
-    with remembering("test compare", progress_bar._case()) as stages:
-        assert stages.last == {"reading": 1.0, "preparing": 2.0, "running": 3.0}
-        stages.took |= first  # so that another case knows a first run
-    clock = Clock()
-    stages = ProgressBar(first, clock)
-    stages.enter("reading a")
-    assert stages.left()[1] == pytest.approx(156.0)
-    clock.now = 1.0
-    stages.enter("preparing")
-    assert stages.left()[1] == pytest.approx(5.0)
-
-
-def test_a_busy_computer_slows_every_stage_of_a_first_run():
-    """It has a third of one: what usually takes 60 s takes three minutes."""
-    clock = Clock()
-    stages = ProgressBar({"reading": 1.0, "network": 60.0}, clock, cpu=lambda: clock.now / 3.0, same_case=False)
-    stages.enter("reading a")
-    clock.now = 3.0
-    stages.enter("network from the field")
-    assert stages.left()[1] == pytest.approx(180.0)

@@ -116,12 +116,3 @@ def test_runs_that_are_over_leave_no_course_of_their_inputs_behind():
     for bias in (0.1, 0.2, 0.3):
         predict(net, test, {net.parameters[0].name: bias})
     assert courses() <= before
-
-
-def test_a_record_keeps_only_what_was_asked_of_it_last():
-    """Every event that is tried has ends of its own, and each set of instants takes a factor of every law."""
-    signals = warm_test(machine()).signals
-    instants = [np.union1d(np.arange(5.0), [0.01 * n]) for n in range(1, 30)]
-    first, *_, last = [signals.finer(at) for at in instants]
-    assert signals.finer(instants[-1]) is last
-    assert signals.finer(instants[0]) is not first

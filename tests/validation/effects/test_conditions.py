@@ -18,6 +18,7 @@ from validation.comparison.predict import predict
 from validation.effects import Scene, effect, extended, kinds
 from validation.effects.during import During
 from validation.effects.registry import with_effects
+from validation.effects.streams.flow import flows
 from validation.effects.time_window import Event, checked, event, holds, share
 from validation.inference.columns import effect_columns
 from validation.inference.conditions import tangent_worth
@@ -395,3 +396,10 @@ def test_when_a_sensor_came_loose_is_told_to_the_sample():
     begin, _ = event(effect(lead).condition).spans["dusk"][0]
     assert effect(lead).base.name == "sensor.loose@body"
     assert begin == pytest.approx(slip, abs=step)
+
+
+def test_a_test_may_have_a_colon_in_its_name():
+    net = machine()
+    flow = flows(net)[0].name
+    named, plain = (extended(net, [effect(f"fan.stop@{flow}:{t}:50")]) for t in ("asked: half the flow", "road"))
+    assert len(named.links) == len(plain.links) > len(net.links)

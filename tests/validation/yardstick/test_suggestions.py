@@ -177,18 +177,6 @@ def test_what_did_not_predict_is_not_tried_again(case):
     assert [r.effects for r in refused].count(("mass@core",)) == 1
 
 
-def test_the_sentence_counts_what_the_table_of_refusals_lists(case, monkeypatch):
-    poorer, refused = without(case, ("body", "ambient")), list[Refusal]()
-    refusal = SimpleNamespace(accepted=False, effect=None, checks=(), why="it predicts no better")
-    monkeypatch.setattr("validation.revision.improvement.add", lambda *anything: refusal)
-    odds = [SimpleNamespace(causes=(f"{kind}@core",), probability=0.2) for kind in ("mass", "loss.constant")]
-    said = Said((), odds, "outside", (), (), "nothing explains it")
-    step, _, why = _added(poorer, Supervisor(singletons, suggest=True), said, 9.0, refused, no_progress)
-    assert step is None
-    assert len({r.what for r in refused}) == len(refused) > 2
-    assert why == f"nothing explains it; tried and refused: {len(refused)} other explanations"
-
-
 def test_what_makes_the_model_run_away_is_refused_and_the_next_is_tried(case, monkeypatch):
     poorer, fitted = without(case, ("body", "ambient")), improvement.add
 
