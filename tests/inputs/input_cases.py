@@ -39,6 +39,28 @@ def edited(file: Path, old: str, new: str) -> None:
     file.write_text(text.replace(old, new, 1))
 
 
+STAND = "tests/stand.toml"
+
+
+def swap(file: str, old: str, new: str) -> Callable[[Path], None]:
+    return lambda case: edited(case / file, old, new)
+
+
+def cell(name: str, row: int, value: object) -> Callable[[Path], None]:
+    """One cell of stand.csv."""
+
+    def change(table: pd.DataFrame) -> None:
+        table[name] = table[name].astype(object)
+        table.loc[row, name] = value
+
+    return lambda case: changed(case, "stand", change)
+
+
+def named(name: str) -> Callable[[Path], None]:
+    """Another name of the first test."""
+    return swap("case.toml", "[tests.stand]", f'[tests."{name}"]\nfile = "tests/stand.csv"\nsheet = "{STAND}"')
+
+
 ROOT = Path(__file__).resolve().parents[2]
 Way = tuple[str | int, ...]
 

@@ -4,18 +4,13 @@ import os
 
 import pytest
 from command_line import answered, refusal
-from input_cases import case_of, edited
+from input_cases import STAND, case_of, named, swap
 
 from thermoscope.commands.open_case import fingerprint
 
-STAND = "tests/stand.toml"
 TIME = 'time = "time_s"'
 COPPER = 'kind = "copper"\nR20_ohm = 0.02\ncurrents = ["current_A"]'
 STEP = '[[revision]]\nnumber = 1\naction = "calibrate"\neffects = []\n'
-
-
-def swap(file, old, new):
-    return lambda case: edited(case / file, old, new)
 
 
 def more(file, text):
@@ -50,28 +45,20 @@ def sensor(line):
     return swap(STAND, "sigma_K = 0.4", line)
 
 
-def named(name):
-    return swap("case.toml", "[tests.stand]", f'[tests."{name}"]\nfile = "tests/stand.csv"\nsheet = "{STAND}"')
-
-
 def node(name):
     link = f'[links.more]\nbetween = ["{name}", "yoke"]\nG_W_K = 1'
     return before_losses(f'[nodes."{name}"]\nC_J_K = 3\n{link}')
 
 
-NODES = {f"a node called {name!r}": node(name) for name in ("", " ", "a@b", "a#1", " x", "x ")}
+NODES = {f"a node called {name!r}": node(name) for name in ("", "a@b", " x")}
 CASES = {
     "a case named over two lines": (swap("case.toml", '"three"', '"a\\nb"'), ["case.toml", "one line"]),
-    "a case with a name without end": (swap("case.toml", '"three"', f'"{"y" * 500}"'), ["case.toml", "one line"]),
-    "a case without a name": (swap("case.toml", '"three"', '""'), ["case.toml", "one line"]),
     "frees nothing": (more("case.toml", "[calibration]\nfree = []\n"), ["case.toml", "free = [] names nothing"]),
     "frees the same twice": (more("case.toml", '[calibration]\nfree = ["link.*", "link.*"]\n'), ["'link.*' twice"]),
     "a test frees what is not there": (
         swap("case.toml", "[tests.stand]", '[tests.stand]\nfrees = ["x.*"]'),
         ["'x.*' frees nothing", "stand"],
     ),
-    "a test frees nothing": (swap("case.toml", "[tests.stand]", "[tests.stand]\nfrees = []"), ["names nothing"]),
-    "a catalogue of nothing": (more("case.toml", "[diagnosis]\ncatalogue = []\n"), ["catalogue = [] names nothing"]),
     "no such kind": (more("case.toml", '[diagnosis]\ncatalogue = ["zzz*"]\n'), ["case.toml", "'zzz*'"]),
     "no such line of doubt": (more("case.toml", "[doubt]\nxyz = 3\n"), ["case.toml", "xyz"]),
     "a mesh of a network": (swap("case.toml", "sample_s = 20", "axial_mm = 40"), ["axial_mm", "network"]),
@@ -89,27 +76,16 @@ SHEETS = {
     "no clock": (swap(STAND, TIME, ""), [STAND, "'time' is missing"]),
     "two clocks": (swap(STAND, TIME, f"{TIME}\nperiod_s = 10"), [STAND, "unknown key 'time'"]),
     "a part that runs backwards": (swap(STAND, TIME, f"{TIME}\nfrom_s = 50\nto_s = 20"), [STAND, "from_s = 50"]),
-    "a part after the end": (swap(STAND, TIME, f"{TIME}\nfrom_s = 1e6"), [STAND, "0 rows", "0 to 2990 s"]),
     "a part of two rows": (swap(STAND, TIME, f"{TIME}\nto_s = 10"), [STAND, "2 rows"]),
     "a start of a place that is not there": (swap(STAND, TIME, f"{TIME}\ninitial = {{ mars = 20 }}"), ["'mars'"]),
     "a start in words": (swap(STAND, TIME, f'{TIME}\ninitial = "cold"'), [STAND, "'cold'", "first-readings"]),
     "columns of no sheet": (swap(STAND, TIME, f'{TIME}\ncolumns_of = "no.toml"'), ["no.toml", "no such file"]),
-    "columns of a recording": (swap(STAND, TIME, f'{TIME}\ncolumns_of = "stand.csv"'), ["stand.csv", "TOML"]),
     "an input that is the clock": (more(STAND, "[inputs]\ntime_s = 3\n"), [STAND, "'time_s' is the clock"]),
-    "a column that feeds the clock": (swap(STAND, 'unit = "km/h"', 'unit = "km/h"\ninput = "time_s"'), ["the clock"]),
-    "a mean of one twice": (more(STAND, '[means.M]\nof = ["T_yoke", "T_yoke"]\nplace = "yoke"\n'), ["'T_yoke' twice"]),
-    "a mean of nothing": (more(STAND, '[means.M]\nof = []\nplace = "yoke"\n'), ["means.M", "names nothing"]),
-    "a mean with the air": (more(STAND, '[means.M]\nof = ["T_yoke", "air"]\nplace = "yoke"\n'), ["means.M", "'air'"]),
     "a mean at the air": (more(STAND, '[means.M]\nof = ["T_yoke"]\nplace = "ambient"\n'), ["'ambient' is a boundary"]),
-    "a root of nothing": (more(STAND, "[root_sum_square]\nI_A = []\n"), [STAND, "I_A = [] names nothing"]),
     "a root of a temperature": (more(STAND, '[root_sum_square]\nI_A = ["T_yoke"]\n'), [STAND, "'T_yoke'"]),
     "a recorder that is the test": (more(STAND, '[recorders.x]\nfile = "stand.csv"\n'), [STAND, "recorded twice"]),
-    "a recorder that is not there": (more(STAND, '[recorders.x]\nfile = "no.csv"\n'), ["no.csv", "no such file"]),
-    "a place that is not there": (swap(STAND, 'place = "yoke"', 'place = "mars"'), [STAND, "'mars'", "known"]),
-    "a sensor of another kind": (sensor('sensor = "pt1000"'), [STAND, "did you mean 'pt100'"]),
     "a position in a plane": (sensor("position_mm = [1, 2]"), [STAND, "position_mm = [x, y, z]"]),
     "a unit of another country": (swap(STAND, 'unit = "degC"', 'unit = "Celsius"'), [STAND, "'Celsius'", "degC"]),
-    "an empty unit": (swap(STAND, 'unit = "degC"', 'unit = ""'), [STAND, "unit is missing"]),
     "kelvin for degrees": (
         swap(STAND, 'unit = "degC"\nplace = "ambient"', 'unit = "K"\nplace = "ambient"'),
         ["stand.csv", "line 2", "unit"],
@@ -136,7 +112,7 @@ SHEETS = {
             more(STAND, f"[events.fan_on]\nat_s = [0, 100]\nvalue = [0, {value}]\n"),
             [STAND, "events.fan_on", "not a state"],
         )
-        for value in ('"maybe"', "[1]", "{ x = 1 }", "nan", "inf", "1e308", "9" * 400, "2020-01-01", "true")
+        for value in ('"maybe"', "[1]", "nan", "9" * 400)
     },
     "events that begin late": (more(STAND, '[events.x]\nat_s = [5]\nvalue = ["on"]\n'), [STAND, "at the start"]),
     "events that go back": (more(STAND, "[events.x]\nat_s = [0, 9, 3]\nvalue = [0, 1, 0]\n"), [STAND, "rises"]),
@@ -144,27 +120,19 @@ SHEETS = {
         f"an events file with {kind}": (events(rows), ["ev.csv", words])
         for kind, rows, words in (
             ("no column", "time_s,x\n0,off\n", "'fan_on' is not in the file"),
-            ("a slip", "time_s,fan_on\n0,offf\n", "'offf'"),
             ("a word for a time", "time_s,fan_on\nnow,off\n", "line 2"),
-            ("no end", "time_s,fan_on\n0,inf\n", "not a state"),
-            ("a time left out", "time_s,fan_on\n0,off\n,on\n", "rises"),
             ("nothing", "", "is empty"),
             ("a time before", "time_s,fan_on\n-5,off\n0,on\n", "at the start"),
         )
     },
-    "events of no file": (more(STAND, '[events.x]\nfile = "no.csv"\n'), ["no.csv", "no such file"]),
     "events of a column's input": (more(STAND, "[events.current_A]\nat_s = [0]\nvalue = [1]\n"), ["fed twice"]),
 }
 NETWORKS = {
     **{kind: (spoil, ["network.toml", "[nodes]", "cannot be a name"]) for kind, spoil in NODES.items()},
     "a link with an at sign": (before_losses('[links."a@b"]\nbetween = ["yoke", "ambient"]\nG_W_K = 1'), ["'a@b'"]),
     "a boundary twice": (swap("network.toml", '["ambient"]', '["ambient", "ambient"]'), ["'ambient' twice"]),
-    "no boundary": (swap("network.toml", '["ambient"]', "[]"), ["boundaries = [] names nothing"]),
     "a boundary that is a node": (swap("network.toml", '["ambient"]', '["ambient", "yoke"]'), ["'yoke' is a node"]),
     "a node joined to itself": (swap("network.toml", '["winding", "yoke"]', '["yoke", "yoke"]'), ["two different"]),
-    "a link of three": (swap("network.toml", '["winding", "yoke"]', '["winding", "yoke", "flange"]'), ["two names"]),
-    "no currents": (swap("network.toml", '["current_A"]', "[]"), ["losses.copper", "currents = [] names nothing"]),
-    "a current twice": (swap("network.toml", '["current_A"]', '["current_A", "current_A"]'), ["'current_A' twice"]),
     "a loss at a boundary": (swap("network.toml", 'at = "winding"', 'at = "ambient"'), ["loss:copper", "boundary"]),
     "a loss at nothing": (swap("network.toml", 'at = "winding"', "at = {}"), ["losses.copper", "sum to 0"]),
     "a division by rest": (
@@ -173,13 +141,9 @@ NETWORKS = {
     ),
     "a gigawatt": (loss('kind = "constant"\nP_W = 1e9'), ["network.toml", "passes 3000 degC", "check the units"]),
     "a map turned over": (mapped([0, 1000, 2000], [0, 10], [[1, 2, 3], [4, 5, 6]]), ["losses.copper", "no", "grid"]),
-    "a ragged map": (mapped([0, 1000], [0, 10], [[1, 2], [3]]), ["losses.copper", "grid"]),
     "a map that falls": (mapped([1000, 0], [0, 10], [[1, 2], [3, 4]]), ["losses.copper", "rising"]),
-    "a map of one point": (mapped([0], [0], [[1]]), ["losses.copper", "grid"]),
-    "a map of nothing": (mapped([], [], []), ["losses.copper", "grid"]),
     "a map that cools": (mapped([0, 1000], [0, 10], [[1, 2], [3, -4]]), ["losses.copper", "P_W[1][1] = -4"]),
     "a parameter of nothing": (before_losses("[parameters.x]\nacts_on = []"), ["parameters.x", "names nothing"]),
-    "a parameter of no share": (before_losses("[parameters.x]\nacts_on = {}"), ["parameters.x", "names nothing"]),
     "a parameter twice": (
         before_losses('[parameters."link.yoke-air"]\nacts_on = ["link:yoke-air"]'),
         ["two parameters", "'link.yoke-air'"],
@@ -191,10 +155,8 @@ NETWORKS = {
 MODELS = {
     "an effect twice": (model(STEP.replace("[]", '["convection@flange", "convection@flange"]')), ["twice"]),
     "an effect that is not there": (model(STEP.replace("[]", '["warp@yoke"]')), ["unknown effect 'warp'"]),
-    "an effect at a place that is not there": (model(STEP.replace("[]", '["convection@mars"]')), ["'mars'"]),
     "an interval turned over": (model(f'{STEP}intervals = {{ "link.yoke-air" = [2.0, 1.0] }}\n'), ["not an interval"]),
     "an interval of no value": (model(f'{STEP}intervals = {{ "link.yoke-air" = [1.0, 2.0] }}\n'), ["has no value"]),
-    "half a merge": (model(f"<<<<<<< HEAD\n{STEP}=======\n"), ["not readable as TOML"]),
     "no number": (model(STEP.replace("number = 1", "number = 1.5")), ["number = 1.5"]),
     "a number left out": (model(STEP + STEP.replace("number = 1", "number = 3")), ["not numbered"]),
     "answers in words": (model(f'{STEP}answers = {{ x = "yes" }}\n'), ["x = 'yes'", "true or false"]),

@@ -19,60 +19,39 @@ MAP = "torque_Nm,speed_rpm,copper_W\n"
 POINTS = [(q, n) for q in (0, 50, 100) for n in (0, 1000, 2000)]
 RATE = "use rate {case} --limit winding=155 --no-bands"
 OPTIONS = {
+    "test compare no-such-case": "hust-ipmsm",
     "compare {case} {case}": "extra argument",
-    "compare": "Missing argument",
-    "compre {case}": "No such command",
     "test compare {case} --jsn -": "--jsn",
     "test compare {case} --json /": "is not a file to write to",
-    "test compare {case} --json {case}/tests": "is not a file to write to",
-    "use simulate {case} --out {case}": "a case keeps its inputs there",
     "use simulate {case} --out {case}/tests/x": "a case keeps its inputs there",
-    "use simulate {case} --out {case}/cycles/x": "a case keeps its inputs there",
     "use simulate {case} --out {case}/case.toml": "is not a folder",
     "use simulate {case} --cycle nosuch": "no such cycle",
-    "use simulate {case} --cycle {case}/case.toml": "case.toml",
     "model calibrate {case} --seed -1": "--seed",
-    "model calibrate {case} --seed 99999999999": "--seed",
-    "model calibrate {case} --starts 0": "--starts",
-    "model calibrate {case} --starts 9999": "--starts",
     "model calibrate {case} --profile nosuch": "'nosuch' is not a free parameter",
     "model add {case} convektion@flange": "did you mean 'convection'?",
     "model add {case} convection@mars": "it can sit at",
-    "model add {case} convection@flnge": "did you mean 'flange'?",
     "model add {case} convection": "needs a place: convection@PLACE",
     "model add {case} event@0": "no event '0'",
     "model remove {case} convection@flange": "not in the model",
     "model undo {case}": "no step to undo",
     "model undo {case} --to 5": "no revision 5",
-    "model undo {case} --to x": "--to",
     "explain answer {case} maybe": "is not an answer",
     "explain answer {case} yes": "asked nothing",
     "explain answer {case} yes --about mars": "not a test, event or fault",
-    "explain answer {case} yes --about a@b": "not a test, event or fault",
-    "explain improve {case} --yes --most 0": "--most",
     "use export {case} --as pdf": "not a form to export",
     "use export {case} --as fmu --fmi 5": "2 or 3",
     "use export {case} --as c --limit winding": "is not a limit",
-    "use export {case} --as c --limit mars=3": "known",
     "use export {case} --as c --limit winding=3 --limit winding=4": "given twice",
     "use rate {case}": "no limit is given",
-    f"{RATE} --limit winding=120": "given twice",
     "use rate {case} --limit winding=nan": "is not a limit",
-    "use rate {case} --limit winding=-300": "is not a limit",
     "use rate {case} --limit winding=10 --no-bands": "without any load",
     f"{RATE} --load mars": "is not an input",
     f"{RATE} --at mars=3": "is not an input or boundary",
     f"{RATE} --at ambient=nan": "is not an operating point",
-    f"{RATE} --at ambient=20 --at ambient=30": "given twice",
     f"{RATE} --overload inf": "--overload",
-    f"{RATE} --overload nan": "--overload",
-    f"{RATE} --top inf": "--top",
     f"{RATE} --voltage 100": "is of a loss map",
     f"{RATE} --losses nosuch.csv": "no such file",
-    "bench curves {case} --resolution inf": "--resolution",
-    "bench curves {case} --resolution nan": "--resolution",
     "bench curves {case} --against nosuch": "unknown test 'nosuch'",
-    "bench curves {case} --against stand --test nosuch": "unknown test 'nosuch'",
     "bench curves {case} --against stand --test stand": "no other test than stand",
     "bench curves {case} --against stand --test road": "its load varies",
     "bench curves {case} --test stand": "is for two tests",
@@ -80,22 +59,16 @@ OPTIONS = {
     "bench two-paths {case} --winding mars --machine yoke": "unknown place",
     "bench bases {case}": "no bases",
     "bench carry {case} nosuch": "no such case folder",
-    "bench protocol nosuch.toml": "no such file",
-    "bench report nosuch.toml": "no such file",
-    "bench screen nosuch": "no such machine",
     "bench screen pmsm-m1 --design nosuch": "no design",
     "model build nosuch": "no such machine",
     "model build {case}/network.toml": "unknown section",
-    "model build pmsm-m1 --accuracy inf": "--accuracy",
-    "model machines --out {case}": "a case keeps its inputs there",
-    "show picture {case} nosuch": "unknown picture",
     "show viewer {case}": "no geometry",
+    "show film {case} --out new/f.gif": "no geometry",
+    "show viewer road-test --out v.png": "is not a name",
+    "show film road-test --out f.avi": "is not a name",
     "show serve {case} --port 99999": "--port",
     "show serve tcalb": "did you mean 'tclab'?",
-    "model build tefc-industral": "did you mean 'tefc-industrial'?",
-    "show serve nosuch": "no such case folder",
     "test doctor {case}/tests/stand.csv": "is a file",
-    "test compare /dev/null": "is a file",
 }
 
 
@@ -126,26 +99,14 @@ def columns(rows=ROWS, head="", more="", step="10"):
 
 CYCLES = {
     "no duty type": (duty("S3", "S9"), "type = 'S9'"),
-    "more than all": (duty("40", "150"), "duty_percent = 150"),
-    "a step of nothing": (duty("step_s = 10", "step_s = 0"), "step_s = 0"),
     "without end": (duty("cycles = 3", "cycles = 100000"), "instants"),
-    "a nanosecond": (
-        (CYCLE + '[duty]\ntype = "S1"\nduration_s = 1e9\nstep_s = 1e-3\n[load]\ncurrent_A = 1\n', None),
-        "1e+12 instants",
-    ),
     "no load": (duty("current_A = 100", ""), "no input follows"),
-    "another load": (duty("current_A", "x"), "current_A"),
     "a load twice": ((CYCLE + "[inputs]\ncurrent_A = 5\n" + DUTY, None), "'current_A' is given twice"),
     "no surroundings": ((CYCLE.replace("ambient = 20", "") + DUTY, None), "nothing gives the boundary"),
     "a slip": ((CYCLE.replace("ambient = 20", "ambient = 20\nwater = 30") + DUTY, None), "is called 'water'"),
-    "a cold place": ((CYCLE.replace("20", "-150") + DUTY, None), "ambient = -150"),
     "nothing": (("", None), "'time' is missing"),
-    "no text": (("\x00", None), "TOML"),
-    "no rows": (columns(None), "no such file"),
-    "no numbers": (columns(ROWS.replace(",100", ",")), "holds no number"),
     "a long hole": (columns("t,I\n" + "".join(f"{10 * i},{'' if 3 < i < 27 else 100}\n" for i in range(30))), "I"),
     "milliseconds": (columns(head='time_unit = "ms"'), "1.03 instants"),
-    "too fine": (columns(head='time_unit = "h"', step="0.001"), "instants"),
     "a node as its surroundings": (
         columns(
             ROWS.replace("t,I", "t,I,T").replace(",100", ",100,20"),
@@ -158,7 +119,6 @@ CYCLES = {
         "fed twice",
     ),
     "a duty and columns": ((columns()[0] + DUTY, ROWS), "unknown key 'time'"),
-    "half a vehicle": (columns(more="[vehicle]\nmass_kg = 1000\n"), "series-machine"),
     "half a machine": (columns(more="[pm-machine]\npole_pairs = 4\n"), "pm-machine"),
 }
 
@@ -188,15 +148,9 @@ def test_what_a_cycle_says_and_nobody_reads_is_told(tmp_path):
 
 MAPS = {
     "nothing": ("", "is empty"),
-    "noise": (bytes(range(256)).decode("latin-1"), "map.csv"),
-    "words": (f"{MAP}a,b,c\n", "no number"),
-    "one point": (f"{MAP}1,2,3\n", "1 torques and 1 speeds"),
     "a hole": (MAP + "".join(f"{q},{n},{q}\n" for q, n in POINTS[:-1]), "1 of 9 points are missing"),
     "a point twice": (MAP + "".join(f"{q},{n},{q}\n" for q, n in [*POINTS, POINTS[0]]), "given twice"),
     "cold": (MAP + "".join(f"{q},{n},{-q}\n" for q, n in POINTS), "negative"),
-    "no numbers": (MAP + "".join(f"{q},{n},nan\n" for q, n in POINTS), "no number"),
-    "endless": (MAP + "".join(f"{q},{n},inf\n" for q, n in POINTS), "no number"),
-    "a sun": (MAP + "".join(f"{q},{n},1e30\n" for q, n in POINTS), "from 0 to 1e+09"),
     "another loss": (MAP.replace("copper", "iron") + "".join(f"{q},{n},{q}\n" for q, n in POINTS), "is not a loss"),
     "no loss": ("torque_Nm,speed_rpm\n" + "".join(f"{q},{n}\n" for q, n in POINTS), "no losses"),
     "semicolons": (MAP.replace(",", ";") + "1;2;3\n", "separated by ';'"),
@@ -219,11 +173,8 @@ def test_a_loss_map_that_is_none_is_refused(tmp_path, text, words):
 
 LOSSES = {
     "no kind": ("{ at = 'base', P_W = 3 }", "'kind' is missing"),
-    "no place": ("{ kind = 'constant', P_W = 3 }", "'at'"),
     "a kind unheard of": ("{ at = 'base', kind = 'magic', P_W = 3 }", "kind = 'magic'"),
-    "a negative power": ("{ at = 'base', kind = 'constant', P_W = -3 }", "P_W = -3"),
     "more than a whole": ("{ at = { base = 0.7, foot = 0.7 }, kind = 'constant', P_W = 3 }", "sum to 1.4"),
-    "no table": ("3", "3 is not a table"),
 }
 
 
@@ -268,11 +219,8 @@ def record(make, head="time,T winding,I"):
 
 RECORDS = {
     "nothing": ("", "not a record"),
-    "a letter": ("hello", "not a record"),
-    "one row": ("a,b,c\n1,2,3\n", "not a record"),
     "words": ("t,T\n" + "x,y\n" * 50, "not a record"),
     "a clock that runs back": (record(lambda i: f"{i % 10},{20 + i},5"), "runs back"),
-    "a clock turned over": (record(lambda i: f"{60 - i},{20 + i},5"), "runs back"),
     "a century": (record(lambda i: f"{i * 1e9},{20 + i},5"), "at most a year"),
     "only air": (record(lambda i: f"{i},{20 + i},5", "time,T ambient,I"), "no column is a temperature"),
     "a reversed clamp": (record(lambda i: f"{i},{20 + i},-5", "time,T winding,Power"), "is a clamp reversed?"),
@@ -290,14 +238,11 @@ def test_a_record_that_is_none_is_refused(tmp_path, text, words):
 
 NEW = {
     "--set ambient=nan": "is not a NAME=VALUE",
-    "--set ambient": "is not a NAME=VALUE",
     "--set mars=3": "the model reads no",
     "--set ambient=1e9": "ambient = 1000000000",
     "--from 5000": "never all run in the part asked for",
     "--from 100 --to 50": "100 is not before 50",
-    "--from inf": "--from",
     "--to inf": "--to",
-    "--period inf": "--period",
     "--period 0": "--period",
     "--machine pmsm-m1": "one of the two",
     "--json {case}/case.toml": "it stays",
@@ -311,7 +256,7 @@ def test_a_wish_of_new_without_sense_is_refused(shared, words):
     assert NEW[words] in refusal(shared.parent, "test", "new", *files, *given)
 
 
-@pytest.mark.parametrize("where", ["", "tests/x", "case.toml/x", "../" + "m" * 300])
+@pytest.mark.parametrize("where", ["tests/x", "../" + "m" * 300])
 def test_a_new_case_goes_nowhere_else(shared, where):
     files = [shared / "tests/stand.csv", "--yes", "--network", shared / "network.toml"]
     assert "; " in refusal(shared.parent, "test", "new", *files, "--out", shared / where)

@@ -27,10 +27,6 @@ def spike(table):
     table.loc[40, "T_flange"] += 60.0
 
 
-def code(table):
-    table.loc[40, "T_flange"] = 1370.0
-
-
 def twins(table):
     table["T_flange"] = table["T_winding"]
 
@@ -48,7 +44,6 @@ ILL = {
     fahrenheit: "Fahrenheit",
     frozen: "frozen",
     spike: "leap",
-    code: "code for no reading",
     twins: "same readings",
     uneven: "unevenly",
     hole: "no rows from",
@@ -154,9 +149,7 @@ def test_compare_says_the_first_things_that_look_wrong(tmp_path):
     ("change", "words"),
     [
         (lambda v: 10.0 * v, "tenths of a degree"),
-        (lambda v: v / 10.0, "tenths of a degree"),
         (lambda v: 40.0 - v, "wires swapped"),
-        (lambda v: v.where(v.index == 100), "was read 1 time in the whole test"),
         (lambda v: v.where(v.index % 200 == 0), "was read 2 times"),
     ],
 )

@@ -8,7 +8,7 @@ import numpy as np
 import pandas as pd
 import pytest
 from command_line import answered, refusal
-from input_cases import case_of, changed, edited
+from input_cases import case_of, cell, changed, edited
 
 from thermoscope.case_folder.folder import load_case
 from validation.comparison.compare import compare
@@ -59,14 +59,6 @@ def parquet(change=lambda table: table, **options):
     return write
 
 
-def cell(row, name, value):
-    def change(table):
-        table[name] = table[name].astype(object)
-        table.loc[row, name] = value
-
-    return lambda case: changed(case, "stand", change)
-
-
 def link(case):
     (case / STAND).unlink()
     (case / STAND).symlink_to(case / "nowhere.csv")
@@ -88,38 +80,30 @@ def instants(table):
 
 NO_NUMBERS = {
     "overload": "OVERLOAD",
-    "dash": "-",
     "formula": "=A1+2",
-    "hexadecimal": "0x1F",
     "true": "TRUE",
     "underscore": "2_0.5",
-    "two points": "1.2.3",
     "thousands": "1,234.5",
     "decimal comma": "20,5",
     "unit": "20.5 degC",
-    "question": "?",
-    "clock": "12:30",
-    "plus": "+",
-    "apostrophe": "'20",
     "other digits": "\u0663\u0660",
 }
-ENDLESS = {"beyond a double": "1e400", "infinite": "inf", "minus infinite": "-Infinity"}
+ENDLESS = {"beyond a double": "1e400", "infinite": "inf"}
+SOME = {name: NO_NUMBERS[name] for name in ("overload", "true", "decimal comma")}
 REFUSED = {
     **{
-        f"a cell: {k}": (cell(10, "T_flange", v), ["line 12", "T_flange", "not a number"])
+        f"a cell: {k}": (cell("T_flange", 10, v), ["line 12", "T_flange", "not a number"])
         for k, v in NO_NUMBERS.items()
     },
-    **{f"a cell: {k}": (cell(10, "T_flange", v), ["line 12", "T_flange", "infinite"]) for k, v in ENDLESS.items()},
-    **{f"a time: {k}": (cell(10, "time_s", v), ["line 12", "time_s", "test new"]) for k, v in NO_NUMBERS.items()},
-    **{f"a current: {k}": (cell(10, "current", v), ["line 12", "current"]) for k, v in NO_NUMBERS.items()},
+    **{f"a cell: {k}": (cell("T_flange", 10, v), ["line 12", "T_flange", "infinite"]) for k, v in ENDLESS.items()},
+    **{f"a time: {k}": (cell("time_s", 10, v), ["line 12", "time_s", "test new"]) for k, v in SOME.items()},
+    **{f"a current: {k}": (cell("current", 10, v), ["line 12", "current"]) for k, v in SOME.items()},
     "times in words": (
         lambda case: changed(case, "stand", lambda t: t.__setitem__("time_s", instants(t).time_s)),
         ["line 2", "time_s", "test new"],
     ),
     "a trailer": (lines(lambda rows: [*rows, "# end"]), ["line 302", "cut off"]),
-    "a trailer with commas": (lines(lambda rows: [*rows, "End,,,,,,"]), ["line 302", "'End'"]),
     "a line of commas": (lines(lambda rows: [*rows, ",,,,,,"]), ["line 302", "a time is missing"]),
-    "the header again": (lines(lambda rows: [*rows, rows[0]]), ["line 302", "time_s"]),
     "a value too many": (lines(lambda rows: [*rows[:50], f"{rows[50]},7", *rows[51:]]), ["line 51", "8 values"]),
     "no header": (lines(lambda rows: rows[1:]), ["stands twice in the header"]),
     "one row": (lines(lambda rows: rows[:2]), ["1 rows", "at least 3"]),
@@ -131,22 +115,17 @@ REFUSED = {
     "a header with an escape code": (text(lambda t: t.replace("T_flange", "\x1b[31mT", 1)), [r"\x1b[31mT"]),
     "a link to nowhere": (link, ["leads nowhere"]),
     "a gzip with a tail": (packed(lambda c: gzip.compress(c) + b"junk"), ["not readable as gzip"]),
-    "an empty gzip": (packed(lambda c: gzip.compress(b"")), ["the file is empty"]),
-    "a gzip of spaces": (packed(lambda c: gzip.compress(b" " * 10**6)), ["the file is empty"]),
     "a gzip of commas": (packed(lambda c: gzip.compress(b"," * 10**5)), ["100,001 columns", "at most"]),
     "an old workbook": (other("xls", b"\xd0\xcf\x11\xe0" + bytes(500)), ["found there", "stand.xls"]),
-    "a workbook of noise": (other("xlsx", b"PK\x03\x04" + bytes(range(200))), ["stand.xlsx", "Excel"]),
     "a workbook that is a letter": (document, ["stand.xlsx", "Excel"]),
     "an empty workbook": (excel(lambda t: t.iloc[:0]), ["0 rows"]),
     "a workbook with an error": (excel(lambda t: t.assign(T_flange=["#BUSY!", *t.T_flange[1:]])), ["line 2", "#BUSY!"]),
     "a Parquet cut off": (other("parquet", b"PAR1" + bytes(90)), ["stand.parquet", "really Parquet"]),
     "lists in a Parquet": (parquet(lambda t: t.assign(T_flange=[[1, 2]] * len(t))), ["T_flange", "not a number"]),
     "true and false as a current": (parquet(lambda t: t.assign(current=True)), ["current", "true and false"]),
-    "true and false as a temperature": (parquet(lambda t: t.assign(T_flange=True)), ["T_flange", "true and false"]),
     "instants as a temperature": (parquet(lambda t: t.assign(T_flange=instants(t).time_s)), ["T_flange", "instants"]),
     "times too coarse": (parquet(lambda t: t.assign(time_s=(t.time_s + 1.7e9).astype("float32"))), ["given twice"]),
     "a TDMS of noise": (other("tdms", b"TDSm" + bytes(500)), ["stand.tdms"]),
-    "an empty TDMS": (other("tdms", b""), ["stand.tdms", "no channels"]),
     "an MF4 of noise": (other("mf4", b"MDF     4.10" + bytes(500)), ["stand.mf4"]),
     "a worksheet of a CSV": (worksheet, ["stand.csv", "no worksheets"]),
     "a worksheet that is not there": (lambda case: (excel()(case), worksheet(case)), ["no worksheet 'data'", "Sheet1"]),
@@ -175,22 +154,16 @@ SAME = {
     "a workbook": excel(),
     "a line of units": lines(lambda rows: [rows[0], ",".join(["s", *UNITS]), *rows[1:]]),
     "a preamble": lines(lambda rows: ["# logger 3", "Started,2026-03-28", "", *rows]),
-    "a workbook with a line of units": excel(
-        lambda t: pd.concat([pd.DataFrame([["s", *UNITS]], columns=t.columns), t])
-    ),
     "numbers in words": excel(lambda t: t.astype(str)),
     "instants in Excel": excel(instants),
     "a Parquet": parquet(index=False),
     "a Parquet of instants": parquet(instants),
-    "a Parquet of zoned instants": parquet(lambda t: t.assign(time_s=instants(t).time_s.dt.tz_localize("UTC"))),
     "a Parquet of spans": parquet(lambda t: t.assign(time_s=pd.to_timedelta(t.time_s, unit="s"))),
     "times as the index": parquet(lambda t: t.set_index("time_s")),
     "a gzip in pieces": packed(lambda c: gzip.compress(c[:500]) + gzip.compress(c[500:])),
     "an ending in capitals": lambda case: (case / STAND).rename(case / "tests/stand.CSV"),
-    "quoted cells": lines(lambda rows: [",".join(f'"{c}"' for c in row.split(",")) for row in rows]),
     "empty lines": lines(lambda rows: [*rows, "", "", ""]),
     "times of the day": lambda case: changed(case, "stand", lambda t: t.__setitem__("time_s", t.time_s + 1.7e9)),
-    "times before the start": lambda case: changed(case, "stand", lambda t: t.__setitem__("time_s", t.time_s - 500)),
 }
 
 
@@ -211,7 +184,7 @@ def test_a_unit_that_the_file_says_and_the_sheet_does_not_is_said(tmp_path):
 def test_an_empty_cell_is_a_missing_reading_with_its_line(tmp_path):
     case = case_of(tmp_path)
     for row, value in enumerate(["", "   ", "NaN", "#N/A", "null"]):
-        cell(10 + row, "T_flange", value)(case)
+        cell("T_flange", 10 + row, value)(case)
     code, _, err = answered("test", "compare", case)
     assert code == 1
     assert "5 missing readings, first in line 12" in err

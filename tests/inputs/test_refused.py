@@ -7,23 +7,7 @@ import tarfile
 
 import pytest
 from command_line import answered, contents
-from input_cases import case_of, changed, edited
-
-STAND = "tests/stand.toml"
-
-
-def swap(file, old, new):
-    return lambda case: edited(case / file, old, new)
-
-
-def column(name, row, value):
-    """One cell of stand.csv."""
-
-    def change(table):
-        table[name] = table[name].astype(object)
-        table.loc[row, name] = value
-
-    return lambda case: changed(case, "stand", change)
+from input_cases import STAND, case_of, cell, changed, edited, named, swap
 
 
 def whole(name, make):
@@ -89,10 +73,6 @@ def model(values):
     return lambda case: (case / "model.toml").write_text(text)
 
 
-def named(name):
-    return swap("case.toml", "[tests.stand]", f'[tests."{name}"]\nfile = "tests/stand.csv"\nsheet = "{STAND}"')
-
-
 def parameter(keys):
     extra = f'[parameters.x]\nacts_on = ["link:yoke-air"]\n{keys}\n[losses.copper]'
     return swap("network.toml", "[losses.copper]", extra)
@@ -100,7 +80,39 @@ def parameter(keys):
 
 AIR = "[columns.air]"
 FLANGE = 'between = ["flange", "ambient"]'
+CURRENT = '[columns.current]\nquantity = "current"\nunit = "A"\n'
 REFUSED = {
+    "unknown key": (swap("case.toml", "sample_s", "sample_sec"), ["case.toml", "unknown key 'sample_sec'", "sample_s"]),
+    "unknown role": (swap("case.toml", '"validate"', '"training"'), ["tests.road", "training", "validate"]),
+    "neither machine nor network": (swap("case.toml", 'network = "network.toml"', ""), ["machine", "network"]),
+    "frees what is not there": (
+        swap("case.toml", "[tests.stand]", '[calibration]\nfree = ["link.winding-yok"]\n[tests.stand]'),
+        ["case.toml", "link.winding-yok", "link.winding-yoke"],
+    ),
+    "recording that is not there": (
+        lambda case: (case / "tests/town.csv").unlink(),
+        ["town.csv", "no such file", "stand.csv"],
+    ),
+    "network that is not there": (lambda case: (case / "network.toml").unlink(), ["network.toml", "no such file"]),
+    "misspelt quantity": (swap(STAND, '"current"', '"curent"'), ["curent", "did you mean 'current'"]),
+    "misspelt key of a column": (swap(STAND, "sigma_K", "sigma"), ["unknown key 'sigma'", "did you mean 'sigma_K'"]),
+    "misspelt place": (swap(STAND, '"flange"', '"flnge"'), ["'flnge'", "did you mean 'flange'"]),
+    "misspelt column": (
+        swap(STAND, "[columns.T_yoke]", "[columns.T_joke]"),
+        ["'T_joke' is not in the file", "'T_yoke'"],
+    ),
+    "input without a column": (swap(STAND, CURRENT, ""), ["stand.toml", "current_A"]),
+    "boundary without a column": (
+        swap(STAND, "[columns.air]", "[columns.air]\nuse = false"),
+        ["stand.toml", "ambient"],
+    ),
+    "a time given twice": (cell("time_s", 29, 280), ["line 31", "twice"]),
+    "a long hole in an input": (
+        whole("current", lambda table: table["current"].where((table.index < 50) | (table.index > 100))),
+        ["stand.csv", "current"],
+    ),
+    "misspelt key of the network": (swap("network.toml", "G_W_K = 8", "G = 8"), ["network.toml", "winding-yoke"]),
+    "model of another network": (model('"link.wrong" = 1.0'), ["model.toml", "link.wrong"]),
     "a case named with an escape code": (
         swap("case.toml", 'name = "three"', 'name = "\\u001b[2J"'),
         ["case.toml", r"\x1b[2J", "printed"],
@@ -115,8 +127,6 @@ REFUSED = {
     ),
     "name that leads outside": (named("/../../../ESCAPED"), ["case.toml", "ESCAPED", "characters without"]),
     "name with a backslash": (named("a\\\\b"), ["case.toml", "characters without"]),
-    "name of dots": (named(".."), ["case.toml", "characters without"]),
-    "empty name": (named(""), ["case.toml", "characters without"]),
     "name with a line break": (named("a\\nb"), ["case.toml", "one line"]),
     "name without end": (named("x" * 200), ["case.toml", "at most 80 letters"]),
     "two recordings of one name": (beside, ["stand.csv and stand.csv.gz", 'file = "tests/stand.csv"']),
@@ -125,20 +135,13 @@ REFUSED = {
         ["tests.stand", "tests.town", "one recording"],
     ),
     "network of a wrong type": (swap("case.toml", '"network.toml"', "3"), ["case.toml", "network = 3"]),
-    "network that is a folder": (swap("case.toml", '"network.toml"', '"tests"'), ["tests", "is not a file"]),
-    "network without a name": (swap("case.toml", '"network.toml"', '""'), ["is not a file"]),
     "recording that is a pipe": (pipe("tests/stand.csv"), ["stand.csv", "is not a file"]),
-    "sheet that is a pipe": (pipe(STAND), ["stand.toml", "is not a file"]),
-    "case that is a pipe": (pipe("case.toml"), ["case.toml", "is not a file"]),
     "damaged gzip": (bytes_of("tests/stand.csv", lambda c: ("tests/stand.csv.gz", damaged(c))), ["as gzip"]),
-    "half a gzip": (bytes_of("tests/stand.csv", lambda c: ("tests/stand.csv.gz", packed(c)[:900])), ["gzip"]),
-    "no gzip": (bytes_of("tests/stand.csv", lambda c: ("tests/stand.csv.gz", c)), ["not readable as gzip"]),
     "archive": (bytes_of("tests/stand.csv", lambda c: ("tests/stand.csv.gz", archive(c))), ["zero bytes"]),
     "binary": (bytes_of("tests/stand.csv", lambda c: ("tests/stand.csv", bytes(range(256)) * 9)), ["zero bytes"]),
     "UTF-16": (bytes_of("tests/stand.csv", lambda c: ("tests/stand.csv", c.decode().encode("utf-16"))), ["stand.csv"]),
     "Latin-1": (bytes_of("tests/stand.csv", lambda c: ("tests/stand.csv", c.replace(b"air", b"\xb0C"))), ["UTF-8"]),
     "no workbook": (bytes_of("tests/stand.csv", lambda c: ("tests/stand.xlsx", c)), ["stand.xlsx", "Excel"]),
-    "no Parquet": (bytes_of("tests/stand.csv", lambda c: ("tests/stand.parquet", c)), ["stand.parquet"]),
     "decimal commas": (
         bytes_of("tests/stand.csv", lambda c: ("tests/stand.csv", c.replace(b".", b","))),
         ["decimal commas"],
@@ -149,23 +152,17 @@ REFUSED = {
         lambda case: changed(case, "stand", lambda table: table.insert(7, " T_yoke", table["T_yoke"])),
         ["'T_yoke' stands twice"],
     ),
-    "last time of 1e12": (column("time_s", 299, 1e12), ["1e+12 s", "time_unit"]),
+    "last time of 1e12": (cell("time_s", 299, 1e12), ["1e+12 s", "time_unit"]),
     "time unit that leaves one sample": (
         swap(STAND, 'time = "time_s"', 'time = "time_s"\ntime_unit = "ms"'),
         ["2.99 s", "time_unit"],
-    ),
-    "time unit that makes decades": (
-        swap(STAND, 'time = "time_s"', 'time = "time_s"\ntime_unit = "year"'),
-        ["time_unit"],
     ),
     "time unit to a huge power": (
         swap(STAND, 'time = "time_s"', 'time = "time_s"\ntime_unit = "s**999999999"'),
         ["s**999999999", "known: h"],
     ),
     "unit of powers of powers": (swap(STAND, '"km/h"', '"km/h**9**9**9**9"'), ["km/h**9", "known"]),
-    "unit that is a number": (swap(STAND, '"km/h"', "3"), ["unit = 3"]),
     "unit that is a list": (swap(STAND, '"km/h"', '["km/h"]'), ["not a unit"]),
-    "time unit that is a number": (swap(STAND, 'time = "time_s"', 'time = "time_s"\ntime_unit = 3'), ["unit = 3"]),
     "m/s of a shaft": (swap(STAND, '"vehicle_speed"\nunit = "km/h"', '"speed"\nunit = "m/s"'), ["vehicle_speed"]),
     "input named in another unit": (
         swap(STAND, '"current"\nunit = "A"', '"current"\nunit = "A"\ninput = "current_mA"'),
@@ -187,21 +184,11 @@ REFUSED = {
         swap(STAND, "[columns.T_flange]", '[columns.T_flange]\ncolumn = "T_yoke"'),
         ["T_flange", "one column"],
     ),
-    "boundary below all weather": (
-        swap(STAND, '"ambient"', '"ambient"\nuse = false\n[boundaries]\nambient = -150'),
-        ["-150", "-100"],
-    ),
     "sensor without end": (swap(STAND, "sigma_K = 0.4", "sigma_K = inf"), ["T_flange", "sigma_K = inf"]),
-    "sensor of no width": (swap(STAND, "sigma_K = 0.4", "sigma_K = 0"), ["T_flange", "sigma_K = 0"]),
-    "reading below all cold": (column("T_flange", 10, -150), ["line 12", "-150"]),
-    "reading above all metal": (column("T_flange", 10, 5000), ["line 12", "5000"]),
-    "reading of 1e300": (column("current", 10, 1e29), ["line 12", "1e+29"]),
+    "reading below all cold": (cell("T_flange", 10, -150), ["line 12", "-150"]),
+    "reading above all metal": (cell("T_flange", 10, 5000), ["line 12", "5000"]),
     "degC read as K": (swap(STAND, 'unit = "degC"\nplace = "winding"', 'unit = "K"\nplace = "winding"'), ["unit"]),
     "reversed clamp": (lambda case: power(case, lambda amps: -amps), ["negative", "clamp", "line"]),
-    "one reading of a reversed clamp": (
-        lambda case: power(case, lambda amps: amps.where(amps.index != 40, -50.0)),
-        ["negative", "line 42"],
-    ),
     "nodes alone": (
         lambda case: [
             edited(case / "network.toml", FLANGE, 'between = ["flange", "winding"]'),
@@ -210,8 +197,6 @@ REFUSED = {
         ["no heat can leave", "'winding', 'yoke', 'flange'", "ambient"],
     ),
     "a capacity of zero": (swap("network.toml", "C_J_K = 2000", "C_J_K = 0"), ["C_J_K = 0", "1e-09 to 1e+10"]),
-    "a capacity of next to nothing": (swap("network.toml", "C_J_K = 2000", "C_J_K = 1e-300"), ["C_J_K", "1e-09"]),
-    "a resistance of nothing": (swap("network.toml", "R20_ohm = 0.02", "R20_ohm = 0"), ["R20_ohm", "1e-09"]),
     "a factor down to next to nothing": (parameter("low = 1e-300"), ["low = 1e-300", "1e-12"]),
     "no capacity": (
         lambda case: [edited(case / "network.toml", f"C_J_K = {C}", "") for C in (2000, 6000, 3000)],
@@ -225,33 +210,16 @@ REFUSED = {
         ),
         ["streams.x", "'yoke' 2 times", "circuits"],
     ),
-    "stream to nowhere": (
-        swap("network.toml", "[losses.copper]", '[streams.x]\npath = ["yoke"]\nmcp_W_K = 5\n[losses.copper]'),
-        ["leads nowhere"],
-    ),
     "shares that make more than a whole": (
         swap("network.toml", 'at = "winding"', "at = { winding = 0.7, yoke = 0.7 }"),
         ["sum to 1.4"],
     ),
     "negative share": (swap("network.toml", 'at = "winding"', "at = { winding = 1.5, yoke = -0.5 }"), ["= 1.5"]),
-    "capacity of 400 digits": (swap("network.toml", "C_J_K = 2000", f"C_J_K = {'9' * 400}"), ["C_J_K"]),
     "capacity of 5000 digits": (swap("network.toml", "C_J_K = 2000", f"C_J_K = {'9' * 5000}"), ["network.toml"]),
-    "malformed loss map": (
-        swap(
-            "network.toml",
-            'kind = "copper"\nR20_ohm = 0.02\ncurrents = ["current_A"]',
-            'kind = "map"\nat_speed = [0, 1]\nat_torque = [0, 1]\nP_W = [1, 2]',
-        ),
-        ["losses.copper", "P_W"],
-    ),
     "runaway": (swap("network.toml", "R20_ohm = 0.02", "R20_ohm = 2"), ["winding", "thermal runaway", "copper"]),
     "bounds that cross": (parameter("low = 2\nhigh = 0.5"), ["parameters.x", "low = 2", "high = 0.5"]),
-    "bounds without 1": (parameter("value = 3\nlow = 2\nhigh = 5"), ["parameters.x", "neutral value = 1"]),
     "value outside its bounds": (parameter("value = 9\nlow = 0.5\nhigh = 5"), ["parameters.x", "value = 9"]),
-    "factor from below zero": (parameter("low = -1\nhigh = 5"), ["parameters.x", "low = -1"]),
     "model beyond its bounds": (model('"link.yoke-air" = 5000'), ["revision 1", "link.yoke-air", "0.001 to 1000"]),
-    "model with a negative factor": (model('"link.yoke-air" = -1'), ["revision 1", "link.yoke-air"]),
-    "model that is not finite": (model('"link.yoke-air" = nan'), ["link.yoke-air", "nan"]),
 }
 
 
@@ -270,9 +238,7 @@ def test_one_line_exit_2_files_as_before(tmp_path, spoil, words):
     ("option", "name", "words"),
     [
         ("--json", "case.toml", "stays"),
-        ("--json", "network.toml", "stays"),
         ("--json", "tests/stand.csv", "stays"),
-        ("--json", "tests/stand.toml", "stays"),
         ("--json", "tests", "not a file"),
         ("--json", "", "not a file"),
         ("--out", ".", "inputs"),
@@ -296,7 +262,3 @@ def test_a_document_may_be_written_again(tmp_path):
     for _ in range(2):
         assert answered("compare", case, "--json", tmp_path / "result.json")[0] == 1
     assert (tmp_path / "result.json").read_text().startswith("{")
-
-
-def test_a_seed_below_zero(tmp_path):
-    assert answered("calibrate", case_of(tmp_path), "--seed", "-1")[0] == 2

@@ -57,8 +57,9 @@ def test_page_of_limits_is_current():
     assert PAGE.read_text(encoding="utf-8") == page()
 
 
-@pytest.mark.parametrize("reader", [read_recording, read_source])
-@pytest.mark.parametrize(("limit", "low"), [("rows", 20), ("cells", 60), ("bytes", 200)])
+@pytest.mark.parametrize(
+    ("reader", "limit", "low"), [(read_recording, "rows", 20), (read_source, "cells", 60), (read_source, "bytes", 200)]
+)
 @pytest.mark.parametrize("name", FILES)
 def test_what_is_too_much_is_refused_by_name_and_read_with_the_limit_raised(
     tmp_path, monkeypatch, name, limit, low, reader

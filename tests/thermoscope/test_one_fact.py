@@ -1,4 +1,4 @@
-"""One fact, one number, one colour: terminal, JSON, report, workbench, viewer and pictures of three cases agree."""
+"""One fact, one number, one colour: terminal, JSON, report, workbench, viewer and pictures of a case agree."""
 
 import json
 import re
@@ -32,10 +32,10 @@ EFFECT = "convection@flange"
 DRAWN = ROOT / "tests" / "viz" / "pages" / "viewer_in_node.js"
 
 
-@pytest.fixture(scope="module", params=[3.0, 6.0, 10.0])
-def told(request, thermoscope, tmp_path_factory):
+@pytest.fixture(scope="module")
+def told(thermoscope, tmp_path_factory):
     """What each medium says of one case: the text, document or page by its name."""
-    case = small_case(tmp_path_factory.mktemp("told"), request.param, step=20.0)
+    case = small_case(tmp_path_factory.mktemp("told"), 6.0, step=20.0)
     thermoscope("calibrate", case)
     media = {"wrong": load_case(case), "wrong page": page(thermoscope, case)}
     media["before"] = thermoscope("compare", case, "--json", "-").document

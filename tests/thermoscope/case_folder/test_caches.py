@@ -6,14 +6,13 @@ from collections import Counter
 import pytest
 from small_case import measured, write_csv
 
-from lumped.build import pipeline
 from thermoscope.case_folder import folder as case_folder
 from thermoscope.case_folder.folder import load_case
-from thermoscope.case_folder.runs import before_last, comparison_of, readings
+from thermoscope.case_folder.runs import before_last, readings
 from thermoscope.commands.model.calibrate import calibrate
 from thermoscope.commands.show.pages import report
 from thermoscope.commands.test.compare import compare
-from validation.comparison import compare as comparison, predict
+from validation.comparison import predict
 
 
 @pytest.fixture
@@ -57,16 +56,6 @@ def test_another_sheet_reads_the_recording_anew(case, reads):
     assert reads["stand"] == 2
 
 
-def test_one_comparison_serves_tables_and_pictures(case, monkeypatch):
-    calls, judge = [], comparison.judged_error
-    monkeypatch.setattr(comparison, "judged_error", lambda *a: calls.append(a[1].name) or judge(*a))
-    folder = load_case(case)
-    limits = folder.compared.limits
-    for test in folder.case.tests:
-        assert comparison_of(folder, test).limits == limits[test.name]
-    assert sorted(calls) == ["road", "stand", "town"]
-
-
 def test_a_picture_of_one_test_judges_that_test_alone(case):
     """Its limits are those of the whole comparison, to rounding."""
     folder = load_case(case)
@@ -88,13 +77,3 @@ def test_every_model_is_run_once_over_a_test_for_all_that_shows_its_readings(cas
     first = shown()
     monkeypatch.setattr(predict, "simulate", None)  # no further run
     assert shown() == first
-
-
-def test_a_machine_is_meshed_and_reduced_once(monkeypatch):
-    made = []
-    monkeypatch.setattr(pipeline, "_built", {})
-    monkeypatch.setattr(pipeline, "_anew", lambda machine, *rest: made.append(machine) or object())
-    first, again = pipeline.build("one"), pipeline.build("one")
-    assert first is again
-    assert pipeline.build("other") is not first
-    assert made == ["one", "other"]

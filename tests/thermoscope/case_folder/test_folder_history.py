@@ -40,10 +40,6 @@ def test_step_back_adds_a_revision():
     assert history.last.rmse_K == {"t": (0.5, 2.0)}
 
 
-def test_back_to_the_declared_model():
-    assert History().and_then(FIRST).back_to(0).last.values == {}
-
-
 def test_unknown_revision():
     with pytest.raises(InputError, match="no revision 7"):
         History().and_then(FIRST).back_to(7)
@@ -75,10 +71,8 @@ def test_a_value_of_nothing_is_out_of_the_bounds_of_a_factor():
     ("text", "words"),
     [
         ("", "cut off"),
-        ("[[revision]]\nnumber = 2\naction = 'add'\n", "numbered"),
         ("[[revision]]\nnumber = 1\naction = 'guess'\n", "guess"),
         ("[[revision]]\nnumber = 1\naction = 'add'\nvalue = 3\n", "did you mean 'values'"),
-        ("[[revision]\n", "not readable as TOML"),
     ],
 )
 def test_broken_file(tmp_path, text, words):

@@ -48,11 +48,8 @@ def _stop():
     ("lines", "words"),
     [
         ("[doubt]\nslow = 0.001", "no wider than usual"),
-        ("[doubt]\nsloww = 0.1", "unknown line of doubt"),
         ("[doubt]\nslow = true", "slow"),
-        ('[diagnosis]\ncatalogue = ["convektion"]', "not a kind of effect"),
         ("[diagnosis]\ndraws = 3", "unknown key 'draws'"),
-        ("[calibration]\nstarts = 0", "starts"),
         ("[calibration]\nseed = 1.5", "seed"),
     ],
 )

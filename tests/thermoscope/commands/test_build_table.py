@@ -3,7 +3,6 @@
 import pytest
 
 from thermoscope.commands.model.build import _sizes
-from thermoscope.commands.model.crosscheck import agreement
 
 ERRORS = {"mean": 0.1, "hot": 0.4, "point": 0.5, "mean_part": "a", "hot_part": "b", "point_part": "c"}
 
@@ -27,13 +26,3 @@ def test_the_last_rows_say_yes_where_it_exits_0(mesh, network, code):
     said = " ".join(map(str, notes))
     assert f"{mesh:.2g} % of the rise at the hot spot of poles" in said
     assert ("beyond 4 GB or 3 min" in said) is (mesh > 1.5)
-
-
-def test_means_and_hottest_points_are_told_apart_heated_and_not():
-    """The largest of each kind with its part; a hottest point of 4.2 % makes no mean of 4.2 %."""
-    rows = [("winding", 0.011, 0.9, True), ("yoke", 0.004, 1.3, True), ("insulation", 0.002, 4.2, False)]
-    keys = ("place", "mean_percent", "hot_percent", "heated")
-    assert agreement({"crosscheck": [dict(zip(keys, row, strict=True)) for row in rows]}) == (
-        "means within 0.011 % (winding), hottest points of heated parts within 1.3 % (yoke), "
-        "of others within 4.2 % (insulation)"
-    )

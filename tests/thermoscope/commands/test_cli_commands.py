@@ -11,8 +11,7 @@ from command_line import RUN
 from small_case import small_case
 
 from thermoscope.case_folder.folder import load_case
-from thermoscope.commands.model.revise import CHANGE_K, _unmeasured_words, revision_summary, unmeasured
-from thermoscope.console.summary import lay_out
+from thermoscope.commands.model.revise import CHANGE_K, _unmeasured_words, unmeasured
 
 STRENGTH = 6.0  # W/K at 10 m/s: the convection hidden in the data
 
@@ -44,12 +43,6 @@ def test_the_held_out_error_falls_to_what_the_sensors_leave(story):
     assert town["rmse_K"]["after"] < 0.4  # K, the smallest sigma declared
 
 
-@pytest.mark.parametrize(("step", "code"), [("calibrate", 0), ("wrong", 1), ("diagnose", 0), ("add", 0), ("right", 0)])
-def test_exit_codes(story, step, code):
-    _, done = story
-    assert done[step].code == code, done[step].err
-
-
 FIELDS = {
     "wrong": {"case", "model", "tests", "rmse_K", "floor_K", "roles"},
     "diagnose": {"verdict", "candidates", "cannot_see", "where", "next_tests"},
@@ -77,18 +70,14 @@ ROWS = {
 CHANNEL = {"channel", "place", "n", "rmse_K", "bias_K", "max_abs_K", "sigma_K", "percent_of_rise", "verdict"}
 
 
-@pytest.mark.parametrize("step", FIELDS)
-def test_documents_have_the_contract_s_fields(story, step):
-    assert FIELDS[step] <= set(story[1][step].document)
-
-
-@pytest.mark.parametrize(("step", "field"), ROWS)
-def test_rows_have_the_contract_s_fields(story, step, field):
-    assert ROWS[step, field] <= set(story[1][step].document[field][0])
-
-
-def test_channels_have_the_contract_s_fields(story):
-    assert set(story[1]["wrong"].document["tests"][0]["channels"][0]) >= CHANNEL
+def test_documents_have_the_contract_s_fields_and_exit_codes(story):
+    _, done = story
+    assert {step: answer.code for step, answer in done.items()} == dict.fromkeys(done, 0) | {"wrong": 1}
+    for step, fields in FIELDS.items():
+        assert fields <= set(done[step].document), step
+    for (step, field), keys in ROWS.items():
+        assert keys <= set(done[step].document[field][0]), (step, field)
+    assert set(done["wrong"].document["tests"][0]["channels"][0]) >= CHANNEL
 
 
 def test_places_without_a_sensor_that_a_step_moved_are_told(story):
@@ -102,15 +91,8 @@ def test_places_without_a_sensor_that_a_step_moved_are_told(story):
     found = unmeasured(folder, SimpleNamespace(model=after))
     assert [(p["place"], p["test"]) for p in found] == [("winding", "town")]
     assert found[0]["after_C"] > found[0]["before_C"] + CHANGE_K
-    said = _unmeasured_words(found)
-    assert said.startswith("No sensor sees: winding ")
-    assert len(said) <= 80
-    assert len(_unmeasured_words([*found, {**found[0], "place": 60 * "x"}])) == len(said)
+    assert _unmeasured_words(found).startswith("No sensor sees: winding ")
     assert _unmeasured_words([{**found[0], "after_C": found[0]["before_C"]}]) == ""
-
-
-def test_progress_goes_to_stderr(story):
-    assert "reading stand" in story[1]["calibrate"].err
 
 
 def test_revisions_are_kept_with_evidence(story):
@@ -161,12 +143,6 @@ def test_a_case_inside_the_package_is_copied_before_writing(tmp_path, monkeypatc
     assert "copied the shipped case" in capsys.readouterr().err
 
 
-def test_help_loads_nothing_slow():
-    code = "import sys, thermoscope.cli; print([m for m in ('numpy', 'scipy', 'numba', 'pandas') if m in sys.modules])"
-    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True)
-    assert done.stdout.strip() == "[]", done.stderr
-
-
 @pytest.mark.heavy
 def test_compare_loads_what_runs_a_network_alone(case):
     """Most of what a comparison of few nodes takes is loading packages: NumPy and Numba are needed, these are not."""
@@ -207,13 +183,6 @@ def test_report_and_pictures_of_a_declared_network(story, thermoscope, tmp_path)
     assert {"curves-town.png", "residuals-road.png", "error.png"} <= {p.name for p in tmp_path.iterdir()}
 
 
-@pytest.mark.parametrize(("total", "says"), [(6e-14, "good to less than 0.001 K"), (0.0123, "good to 0.012 K (worst")])
-def test_what_is_exact_is_not_said_to_be_good_to_nothing(total, says):
-    from thermoscope.commands.model.error_budget import in_short
-
-    assert says in in_short({"day": [{"place": "T", "total_K": total}]}, {})
-
-
 def test_a_machine_file_is_copied_once(thermoscope, tmp_path):
     """The file of the library, byte for byte; what lies there stays."""
     from geom import library
@@ -223,12 +192,3 @@ def test_a_machine_file_is_copied_once(thermoscope, tmp_path):
     again = thermoscope("machines", "--copy", "pmsm-m1", "--out", tmp_path)
     assert again.code == 2
     assert "is there already" in again.err
-
-
-def test_a_step_that_was_accepted_begins_with_what_was_found(story):
-    case, done = story
-    document = done["add"].document
-    first = lay_out(revision_summary(document, load_case(case), "CASE"), 200, None)[0][0]
-    assert first.startswith(document["found"])
-    assert document["found"].startswith("Found: forced convection")
-    assert document["why"] not in first

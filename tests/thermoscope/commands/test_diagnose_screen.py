@@ -22,7 +22,7 @@ def candidate(effect, unit, probability=0.99, decision="named", limit=14.14):
     }
 
 
-@pytest.mark.parametrize("unit", ["1", "W", "W/m2/K at 10 m/s"])
+@pytest.mark.parametrize("unit", ["1", "W/m2/K at 10 m/s"])
 def test_the_detection_limit_stands_beside_the_size(unit):
     other = candidate("gap_convection@airgap|rotor", "W/K", 0.01, "no", 3.5)
     found = [candidate("convection@flange.right", unit), other]

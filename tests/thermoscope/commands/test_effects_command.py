@@ -2,13 +2,10 @@
 
 import json
 
-import pytest
-
 from measured.recordings.units import MEMORY_UNIT, QUANTITIES, converted
 from scripts.quantities import PAGE, page
 from thermoscope.commands.explain.effects import effects
 from thermoscope.commands.test.doctor import quantities
-from validation.effects.base import Effect
 from validation.effects.registry import kinds
 
 
@@ -32,18 +29,6 @@ def test_a_recorded_speed_is_no_longer_missing(case, tmp_path, capsys):
         sheet.write_text(sheet.read_text().replace('"vehicle_speed"\nunit = "km/h"', '"speed"\nunit = "rpm"'))
     rows = {e["effect"]: e for e in asked(effects, tmp_path, str(case))["effects"]}
     assert not any("speed_rpm" in word for word in rows["windage"]["missing"])
-
-
-@pytest.mark.parametrize("kind", [k for k in kinds().values() if k.__module__.startswith("validation.")])
-def test_every_effect_of_ours_says_where_it_may_sit(kind):
-    assert kind.sits
-    assert kind.sits != Effect.sits
-
-
-def test_the_catalogue_without_a_case(tmp_path, capsys):
-    document = asked(effects, tmp_path, None)
-    assert {e["effect"] for e in document["effects"]} == set(kinds())
-    assert "40 effects" in capsys.readouterr().out or len(kinds()) != 40
 
 
 def test_quantities_and_what_memory_holds(tmp_path, capsys):

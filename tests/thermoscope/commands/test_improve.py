@@ -2,7 +2,6 @@
 
 import io
 import json
-import re
 from dataclasses import replace
 from types import SimpleNamespace
 
@@ -11,7 +10,6 @@ import pytest
 from small_case import small_case
 
 from measured.case import Case, Model, Test
-from thermoscope.case_folder.folder import load_case
 from thermoscope.case_folder.history import load_history
 from thermoscope.cli import whole_app
 from thermoscope.commands.explain import improve as command
@@ -33,13 +31,9 @@ def improved(tmp_path_factory):
     return code, json.loads(target.read_text()), case
 
 
-def test_it_ends_adequate(improved):
-    code, document, _ = improved
+def test_it_ends_adequate_and_says_how_near_the_best_plain_model_is_here_and_in_the_report(improved):
+    code, document, case = improved
     assert (code, document["verdict"], document["adequate"]) == (0, "adequate", True)
-
-
-def test_its_end_says_how_near_the_best_plain_model_is_here_and_in_the_report(improved):
-    _, document, case = improved
     assert document["why"].endswith(f" {document['plain_left_out_K']:.2f} K")
     fitted = (
         f"as fitted this model leaves {document['left_out_K']:.2f} K; "  # one test: nothing was left out of its fit
@@ -56,25 +50,6 @@ def test_the_staircase_falls_on_the_test_never_used(improved):
     town = [next(t["rmse_K"] for t in s["tests"] if t["role"] == "hold-out") for s in stairs]
     assert town[0] > 2.0
     assert town[-1] < 0.4  # K, the smallest sigma declared
-
-
-def test_the_size_of_what_was_added_is_told_with_its_interval(improved):
-    _, document, case = improved
-    last = load_history(case / "model.toml").revisions[1]
-    (low, high), value = last.intervals["convection@flange"], last.values["convection@flange"]
-    assert [s["laws"] for s in document["stairs"][:2]] == [{}, {}]
-    words = document["stairs"][-1]["laws"]["convection@flange"]
-    assert re.search(rf"at flange: {value:.3g} .+ \[{low:.3g}, {high:.3g}\]$", words)
-    assert f"As fitted: {words} (95 %)." in command.improvement_summary(document, load_case(case), "own").parts
-
-
-def test_the_history_keeps_the_evidence(improved):
-    first, last = load_history(improved[2] / "model.toml").revisions[:2]
-    assert (first.action, last.action) == ("calibrate", "add")
-    assert last.evidence["decision"] == "named"
-    assert last.evidence["score"] > last.evidence["threshold"]
-    low, high = last.intervals["convection@flange"]
-    assert low < last.values["convection@flange"] < high
 
 
 def test_undo_brings_the_model_before_back_and_forgets_nothing(improved, capsys):

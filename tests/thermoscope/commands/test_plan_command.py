@@ -65,18 +65,6 @@ def test_the_page_and_the_document_tell_the_currents_that_are_permitted(case, tm
     assert f"Currents: current_A at {level['level_A']:.4g} A, {level['share_of_rms']:.2f} of its rms." in text
 
 
-@pytest.mark.parametrize(("factor", "says"), [(1.0, False), (0.8, True)])
-def test_only_currents_that_came_down_are_said_to(case, factor, says):
-    folder = load_case(case)
-    found = predicted_curves(folder.case, {"a": folder.case.model}, "cool-down with wind on and off")
-    text = render(
-        BenchPage("three", replace(found, experiment=replace(found.experiment, current_factor=factor)), "town", [])
-    )
-    assert ("0.80 of the record<" in text) == says
-    assert ("They are 0.80" in text) == says
-    assert "Currents: current_A at" in text
-
-
 @pytest.mark.parametrize(
     ("effects", "test", "words"),
     [((), None, "no diagnosis"), (("convection@flange",), "dance", "unknown test 'dance'"), (("a@b",), None, "a@b")],

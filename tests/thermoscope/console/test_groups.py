@@ -27,13 +27,13 @@ def test_help_is_whole_and_narrow(words):
     assert max(map(len, text.splitlines())) <= 80
 
 
-@pytest.mark.parametrize("words", WORDS, ids="-".join)
+@pytest.mark.parametrize("words", WORDS[::6], ids="-".join)
 def test_the_app_of_one_command_says_what_the_whole_says(words):
     for tail in (["--help"], ["--no-such-option"]):
         assert said(narrowed_app([*words, "case"]), [*words, *tail]) == said(whole_app(), [*words, *tail])
 
 
-@pytest.mark.parametrize("words", [[], ["test"], ["use"], ["bench"], ["test", "nothing"], ["nothing"]], ids=str)
+@pytest.mark.parametrize("words", [[], ["use"], ["test", "nothing"], ["nothing"]], ids=str)
 def test_what_is_no_command_is_answered_as_by_the_whole_app(words):
     for tail in ([], ["--help"]):
         assert said(narrowed_app(words), [*words, *tail]) == said(whole_app(), [*words, *tail])

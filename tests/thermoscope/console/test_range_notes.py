@@ -15,13 +15,6 @@ def test_a_range_that_is_left_is_one_note(capsys):
     assert capsys.readouterr().err == "note: loss map: current_A = 400.3 outside 0 to 400\n"
 
 
-def test_every_map_and_input_has_its_own(capsys):
-    with ranges_as_notes():
-        out_of_range("loss map: current_A = 410 outside 0 to 400")
-        out_of_range("loss map: speed_rpm = 9000 outside 0 to 8000")
-    assert len(capsys.readouterr().err.splitlines()) == 2
-
-
 def test_other_warnings_are_shown_as_ever(capsys):
     with pytest.warns(RuntimeWarning, match="a library says so"), ranges_as_notes():
         warnings.warn("a library says so", RuntimeWarning, stacklevel=1)

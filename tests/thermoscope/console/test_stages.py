@@ -2,14 +2,12 @@
 
 import json
 import re
-import sys
 import time
-from itertools import pairwise
 
 import pytest
 
 from thermoscope.console import progress_bar
-from thermoscope.console.progress_bar import ProgressBar, one_bar, progress, remembering, timed_lines
+from thermoscope.console.progress_bar import ProgressBar, one_bar, progress, remembering
 
 
 class Clock:
@@ -74,14 +72,6 @@ def test_time_left_follows_the_pace_of_this_run():
     assert stages.left() == (pytest.approx(0.5), pytest.approx(10.0))
 
 
-def test_what_was_kept_the_last_time_makes_no_fit_faster():
-    """A second run prepares in a quarter of the time; what is looked for takes as long as before."""
-    clock = Clock()
-    stages = ProgressBar({"preparing": 80.0, "trying": 20.0, "looking": 60.0}, clock)
-    worked(stages, clock, [("preparing", 20.0), ("trying", 20.0), ("looking", 0.0)])
-    assert stages.left()[1] == pytest.approx(60.0)
-
-
 @pytest.mark.parametrize(("reads", "rest"), [(40.0, 20.0), (1.0, 10.0), (3.0, 30.0)])
 def test_stages_of_another_case_tell_little_by_one_of_them(reads, rest):
     """A file of a million rows is read forty times as long; what comes after takes twice as long, not forty times."""
@@ -89,16 +79,6 @@ def test_stages_of_another_case_tell_little_by_one_of_them(reads, rest):
     stages = ProgressBar({"reading": 1.0, "running": 4.0, "learning": 6.0}, clock, same_case=False)
     worked(stages, clock, [("reading", reads), ("running", 0.0)])
     assert 0.3 * rest < stages.left()[1] < 3.0 * rest
-
-
-def test_a_stage_of_another_case_that_takes_long_says_that_the_others_will(tmp_path):
-    clock, shares = Clock(), []
-    stages = ProgressBar({"reading": 1.0, "running": 9.0}, clock, same_case=False)
-    for _ in range(30):
-        worked(stages, clock, [("reading", 1.0)])
-        shares += [left[0] for left in [stages.left()] if left]  # in its first seconds none
-    assert shares[-1] < 0.75
-    assert stages.left()[1] > 9.0
 
 
 def test_several_pieces_of_work_have_one_bar(tmp_path, monkeypatch, capsys):
@@ -146,31 +126,6 @@ def test_a_stage_that_counts_says_how_long_it_takes():
     assert stages.left()[1] == pytest.approx(150.0), "a mesh that was not needed is not waited for"
 
 
-def test_the_first_piece_of_a_loop_says_how_long_all_take_at_least():
-    """Nine of them, in a stage that usually takes 20 s: after 10 s of the first some 80 s are still to come."""
-    clock = Clock()
-    stages = ProgressBar({"fitting": 10.0, "looking": 20.0}, clock, same_case=False)
-    worked(stages, clock, [("fitting", 10.0), ("looking", 0.0)])
-    stages.enter("(1 of 9)")
-    clock.now += 10.0
-    assert stages.left()[1] == pytest.approx(80.0)
-    stages.enter("(2 of 9)")
-    assert stages.left()[1] == pytest.approx(80.0)
-
-
-def test_the_share_moves_between_two_counts():
-    """Three pieces of two minutes each, counted as they begin: in every 20 s of the second and third it rises."""
-    clock = Clock()
-    stages, seen = ProgressBar({}, clock), []
-    for number in (1, 2, 3):
-        stages.enter(f"fitting ({number} of 3)")
-        for _ in range(6):
-            clock.now += 20.0
-            seen.append((stages.left() or (0.0,))[0])
-    assert all(b - a > 0.01 for a, b in pairwise(seen[6:]))
-    assert seen[-1] < 1.0
-
-
 def test_the_same_stages_once_more_are_waited_for():
     """Ten steps of 40 s, where the last time there was one: in every 20 s the share moves, and something is left."""
     clock = Clock()
@@ -187,27 +142,6 @@ def test_the_same_stages_once_more_are_waited_for():
         stages.enter(f"step {number}: more")
         assert stages.left()[1] == pytest.approx(80.0), "this one, and one more"
     assert all(a != b for a, b in zip(seen, seen[20:]))
-
-
-def test_that_another_case_was_done_after_its_first_step_says_nothing_of_this_one():
-    """It found nothing: after its tables one step was said, and no more. Of this case a second round may come."""
-    clock, last = Clock(), {"fitting": 10.0, "looking": 20.0, "1 step": 0.1}
-    for same_case, least in ((True, 0.0), (False, 29.0)):
-        stages = ProgressBar(dict(last), clock, same_case=same_case)
-        worked(stages, clock, [("fitting", 10.0), ("looking", 20.0)])
-        assert least <= stages.left()[1] <= least + 2.0
-
-
-@pytest.mark.parametrize(
-    ("share", "rest", "words"),
-    [
-        (0.97, 200.0, "97.0 %, about 3 min left"),
-        (0.5, 100.0, "50 %, about 2 min left"),
-        (0.99999, 0.0, "99 %, about 0 s left"),
-    ],
-)
-def test_a_slow_percent_is_shown_in_parts(share, rest, words):
-    assert progress_bar._remaining((share, rest)) == words
 
 
 def test_a_line_of_80_columns_keeps_its_times():
@@ -229,13 +163,6 @@ def test_a_line_of_80_columns_keeps_its_times():
     assert "…" in text
 
 
-def test_a_pipe_hears_of_a_long_stage(capsys):
-    with timed_lines(ProgressBar({"running": 60.0}), lambda words, share: print(words, file=sys.stderr), 0.2) as tell:
-        tell("running the model")
-        time.sleep(1.0)
-    assert len(capsys.readouterr().err.splitlines()) > 2
-
-
 def test_a_case_is_remembered_for_itself(tmp_path, monkeypatch):
     """A large case says nothing of a small one that was looked at before."""
     monkeypatch.setenv("THERMOSCOPE_CACHE", str(tmp_path))
@@ -247,49 +174,3 @@ def test_a_case_is_remembered_for_itself(tmp_path, monkeypatch):
         monkeypatch.setattr("sys.argv", ["thermoscope", "test", "compare", case])
         with remembering("test compare", progress_bar._case()) as stages:
             assert stages.last == {"running": seconds}
-
-
-def test_what_was_built_and_kept_is_not_waited_for_again(tmp_path, monkeypatch):
-    """The second run of a case has its machine; a case with a declared network has none to check."""
-    monkeypatch.setenv("THERMOSCOPE_CACHE", str(tmp_path))
-    monkeypatch.setattr("sys.argv", ["thermoscope", "test", "compare", "case"])
-    first = {"reading": 1.0, "network": 100.0, "preparing": 2.0, "checking": 50.0, "running": 3.0}
-    with remembering("test compare", progress_bar._case()) as stages:
-        stages.took |= first
-    with remembering("test compare", progress_bar._case()) as stages:
-        assert stages.last == {"reading": 1.0, "preparing": 2.0, "running": 3.0}
-        stages.took |= first  # so that another case knows a first run
-    clock = Clock()
-    stages = ProgressBar(first, clock)
-    stages.enter("reading a")
-    assert stages.left()[1] == pytest.approx(156.0)
-    clock.now = 1.0
-    stages.enter("preparing")
-    assert stages.left()[1] == pytest.approx(5.0)
-
-
-def test_a_busy_computer_slows_every_stage_of_a_first_run():
-    """It has a third of one: what usually takes 60 s takes three minutes."""
-    clock = Clock()
-    stages = ProgressBar({"reading": 1.0, "network": 60.0}, clock, cpu=lambda: clock.now / 3.0, same_case=False)
-    stages.enter("reading a")
-    clock.now = 3.0
-    stages.enter("network from the field")
-    assert stages.left()[1] == pytest.approx(180.0)
-
-
-def test_of_a_small_case_nothing_is_said_before_its_model_ran():
-    """An eighth of the usual for a run of the model: what follows takes a twelfth, not what it usually takes."""
-    usual = {"reading": 0.6, "preparing": 10.0, "estimating": 1.0, "looking": 60.0}
-    clock = Clock()
-    stages = ProgressBar(usual, clock, same_case=False)
-    for word, seconds in (("reading a", 0.1), ("preparing", 0.7), ("estimating", 0.12)):
-        stages.enter(word)
-        assert stages.left() is None
-        clock.now += seconds
-    stages.enter("looking")
-    assert 2.0 < stages.left()[1] < 6.0
-    unread = ProgressBar(usual, clock, same_case=False)
-    unread.enter("reading a")
-    clock.now += 11.0
-    assert unread.left() is not None, "no share stands still for long"

@@ -24,15 +24,6 @@ def test_records_are_objects_or_mappings_and_a_gap_is_none():
     assert table.rows == [["a", 1.0, None, 7], ["b", {"before": 2.0}, 2.0, 7], ["c", None, None, 7]]
 
 
-def test_documents_and_frame_hold_the_same_cells():
-    table = Table("t", ["place", "K"], [["yoke", 1.5], ["winding", None]])
-    assert table.documents() == [{"place": "yoke", "K": 1.5}, {"place": "winding", "K": None}]
-    frame = table.frame()
-    assert list(frame.columns) == ["place", "K"]
-    assert frame["K"].tolist()[0] == 1.5
-    assert frame.attrs["title"] == "t"
-
-
 def test_the_page_and_the_terminal_show_the_same_words():
     from thermoscope.console.summary import Summary, lay_out
     from viz.pages import html

@@ -19,12 +19,7 @@ except SystemExit:
 
 @pytest.mark.parametrize(
     ("words", "given", "used"),
-    [
-        ([], {}, "1"),
-        ([], {"OPENBLAS_NUM_THREADS": "3"}, "3"),
-        (["model", "build"], {}, "1"),
-        (["test", "compare"], {}, "1"),
-    ],
+    [([], {}, "1"), ([], {"OPENBLAS_NUM_THREADS": "3"}, "3"), (["test", "compare"], {}, "1")],
 )
 def test_blas_has_one_thread_unless_told_otherwise(words, given, used):
     env = {k: v for k, v in os.environ.items() if not k.endswith("_NUM_THREADS")}

@@ -15,7 +15,7 @@ from lumped.transfer.laws import Fixed, Radiation
 from measured.case import Case, Channel, Model, Test
 from validation import diagnose
 from validation.bases.base_heat import base_heat
-from validation.bases.which_base import base_hypotheses, declared_base, on_base, switches, which_base, wrong_bases
+from validation.bases.which_base import base_hypotheses, on_base, which_base, wrong_bases
 
 NODES = {"winding": 2.4e3, "stator.core": 2.5e4, "foot": 900.0, "base": 1.2e4, "foot.plate": 900.0, "base.plate": 2e4}
 BASES = {"bench": "on_bench", "plate": "on_plate"}
@@ -73,12 +73,6 @@ def case(**said):
     return Case("small", Model(NETWORK), tuple(tests))
 
 
-def test_bases_of_a_network_and_of_a_test():
-    assert switches(NETWORK) == BASES
-    assert declared_base(measured("p", "plate"), BASES) == "plate"
-    assert declared_base(on_base(measured("p", "plate"), "none", BASES), BASES) == "none"
-
-
 def test_right_sheets_are_believed():
     assert wrong_bases(base_hypotheses(case())) == []
     best = {h.test: h.base for h in which_base(case()) if h.deviance == 0.0}
@@ -134,16 +128,10 @@ def test_what_cannot_be_asked():
     assert wrong_bases(base_hypotheses(bare)) == []
 
 
-@pytest.fixture(scope="module")
-def diagnosed():
-    """The whole diagnosis of three tests, the one on the bench once with its base and once without."""
-    return {said: diagnose(case(b=said), KINDS, plan=False) for said in ("bench", "none")}
-
-
 @pytest.mark.heavy
-def test_diagnosis_says_it_first(diagnosed):
+def test_diagnosis_says_it_first():
     """The verdict is the base, by mechanism; no sensor and no film is accused of what the base does."""
-    found = diagnosed["none"]
+    found = diagnose(case(b="none"), KINDS, plan=False)
     assert found.verdict == "data"
     assert "b did not stand on the base its sheet says (none" in found.words
     assert "At the base, not in the films of the machine: conduction 0 instead of" in found.words
@@ -152,11 +140,3 @@ def test_diagnosis_says_it_first(diagnosed):
     rows = {(h["test"], h["base"]): h["excluded"] for h in found.document()["bases"]}
     assert rows["b", "none"]
     assert not rows["b", "bench"]
-
-
-@pytest.mark.heavy
-def test_diagnosis_of_the_right_bases_goes_on(diagnosed):
-    """Nothing is missing there: the same tests under the right sheet accuse nobody."""
-    found = diagnosed["bench"]
-    assert found.verdict == "adequate"
-    assert not any(h.declared and h.excluded for h in found.bases)

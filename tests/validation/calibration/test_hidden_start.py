@@ -11,7 +11,7 @@ from lumped.integration.simulate import simulate
 from lumped.model.network import Link, Network, Parameter, Place, Row, Source
 from lumped.transfer.laws import Fixed
 from measured.case import Case, Channel, Model, Test
-from validation.comparison.compare import errors, physical
+from validation.comparison.compare import errors
 from validation.comparison.linearisation import segments
 from validation.parameters.unknowns import hidden_starts, with_model, working
 from validation.revision.revise import calibrate
@@ -70,14 +70,6 @@ def test_a_test_that_was_not_fitted_begins_as_those_did_on_average():
     further = replace(case(), tests=(*case().tests, measured("next", "hold-out", begun=average)))
     (error,) = [t for t in errors(with_model(further, model)).tests if t.name == "next"]
     assert error.rmse_K < 0.1
-
-
-def test_a_test_at_rest_begins_at_rest():
-    model, still = calibrate(case()).model, measured("next", "hold-out", begun=20.0, air=20.0)
-    further = replace(case(), tests=(*case().tests, replace(still, boundaries={"air": np.full(400, 20.0)})))
-    assert {k for k in physical(with_model(further, model)) if k.startswith("start")} == {
-        f"start of walls in {name}" for name in BEGAN
-    }
 
 
 def test_at_rest_nothing_is_open():

@@ -17,7 +17,7 @@ from lumped.transfer.reversal import Direction
 from validation.comparison.predict import predict
 from validation.effects import effect, extended
 from validation.effects.sensors.input_fault import Shift
-from validation.parameters.model_form import ExponentError, exponent_derivative, shares, tells_exponent, with_model_form
+from validation.parameters.model_form import ExponentError, exponent_derivative, tells_exponent, with_model_form
 from validation.parameters.reference import reference_of, value_counts
 
 
@@ -159,16 +159,6 @@ class SumOfTwo(Law):
 
     def factor(self, inputs):
         return inputs["on"] + (inputs["speed_rpm"] / 1000.0) ** 0.8
-
-
-def test_shares_name_each_body_once():
-    fan = [link for link in network().links if link.name.endswith(":fan")]
-    assert {p.name for p in shares("fan.flow", fan)} == {f"fan.flow:{link.places[0]}" for link in fan}
-
-
-def test_levels_pool_all_tests(case):
-    every = np.concatenate([t.inputs["current_A"] for t in case.tests])
-    assert reference_of(network(), case.tests).levels["current_A"] == pytest.approx(np.sqrt(np.mean(every**2)))
 
 
 def test_an_added_effect_brings_its_own_exponent(case):

@@ -97,18 +97,16 @@ class CutError(Exception):
 def test_an_interrupted_fit_goes_on():
     """From the values kept it needs fewer steps and ends where the uninterrupted one does."""
     off = case(measured(shift=4.0))
-    kept, told = {}, []
+    kept, told, full, rest = {}, [], [], []
 
     def keep(values):
         kept.update(values)
         if len(told) > 1:
             raise CutError
 
-    whole = calibrate(off, progress=lambda m: None)
+    whole = calibrate(off, progress=full.append)
     with pytest.raises(CutError):
         calibrate(off, progress=told.append, search=Search(keep=keep))
-    rest, full = [], []
     again = calibrate(off, progress=rest.append, search=Search(begin=kept))
-    calibrate(off, progress=full.append)
     assert len(rest) < len(full)
     assert again.model.values["film"] == pytest.approx(whole.model.values["film"], rel=0.01)

@@ -108,15 +108,6 @@ def test_what_trades_in_the_fit_does_not_widen_what_was_measured(calibrated):
     assert tied < 0.8 * loose
 
 
-def test_where_no_sensor_reads_a_place_differs_from_its_node(calibrated):
-    """2 % of the rise everywhere, 3 % more where nothing was held against it; a field's places are what they say."""
-    case, _ = calibrated
-    known = parameter_posterior(case)
-    core, shell = (p.row for p in places(case.model.network))
-    assert known.slow(shell) == USUAL["slow"]
-    assert_allclose(known.slow(core), np.hypot(USUAL["slow"], USUAL["gain"]))
-
-
 def test_at_rest_the_band_is_that_of_a_long_record(calibrated):
     """20 time constants of the chain; a constant load."""
     case, _ = calibrated

@@ -7,7 +7,6 @@ import pytest
 from one_body import LOSS, G, P, measured, one_node
 
 from measured.case import Case, Model
-from measured.doubt import USUAL
 from validation.comparison.compare import compare
 from validation.comparison.residuals import dependence, ljung_box, periodogram
 from validation.comparison.uncertainty import uncertainties
@@ -81,10 +80,6 @@ def test_the_arithmetics_own_error_covers_what_it_is(every):
     )
     (row,) = uncertainties(one_node(LOSS), test, {})
     assert 0.0 < row.error_K <= row.numeric_K < 0.1
-
-
-def test_inputs_move_by_their_share():
-    assert 0.0 < USUAL["input"] < 0.1
 
 
 def test_all_tests_and_sensors_are_looked_at():

@@ -13,12 +13,6 @@ def test_one_doubt_and_one_sensor_is_the_textbook_shrinkage():
     assert found.explained == pytest.approx([4 / 5, 4 / 5])
 
 
-def test_a_place_that_shares_no_doubt_with_a_sensor_is_a_guess():
-    found = interpolated(np.array([[0.0, 2.0]]), np.array([[1.0, 0.0]]), np.array([3.0]), np.array([0.1]))
-    assert found.mean == pytest.approx([0.0])
-    assert found.explained == pytest.approx([0.0])
-
-
 def test_without_noise_it_passes_through_the_readings():
     rng = np.random.default_rng(0)
     here = rng.normal(size=(3, 8))

@@ -36,8 +36,6 @@ def operator(target, value=0.0):
 @pytest.mark.parametrize("head", ["bias", "gain", "stem", "drift", "lag", "boundary", "initial", "delay"])
 def test_tangents_pass_through_the_operator(head):
     """The derivative of a reading by its operator, at a point where other operators act too."""
-    from dataclasses import replace
-
     net, test = machine(), warm_test(machine())
     name = {"boundary": "ambient", "initial": "warm", "delay": "warm"}.get(head, "yoke")
     p, other = operator(f"{head}:{name}"), operator("gain:yoke ", 0.0)
@@ -50,8 +48,6 @@ def test_tangents_pass_through_the_operator(head):
 
 
 def test_bias_gain_and_stem():
-    from dataclasses import replace
-
     net, test = machine(), warm_test(machine())
     plain = predict(net, test, {}).y[:, 3]
     net = replace(
@@ -68,8 +64,6 @@ def test_bias_gain_and_stem():
 
 
 def predict_without_lag(net, test):
-    from dataclasses import replace
-
     channels = tuple(replace(c, lag_s=0.0) for c in test.channels)
     return predict(net, replace(test, channels=channels), {}).y[:, 3]
 
@@ -87,8 +81,7 @@ HEADS = (
 )
 
 
-@pytest.mark.parametrize("stop", [50, 7])
-@pytest.mark.parametrize("delay", [0.0, 23.0])
+@pytest.mark.parametrize(("delay", "stop"), [(0.0, 50), (23.0, 7)])
 def test_a_test_looked_at_in_stretches_is_the_test_as_a_whole(delay, stop):
     """Readings and tangents by heat and by every operator, with a clock that is right, or late by several samples."""
     net, test = machine(), warm_test(machine())
@@ -123,12 +116,3 @@ def test_runs_that_are_over_leave_no_course_of_their_inputs_behind():
     for bias in (0.1, 0.2, 0.3):
         predict(net, test, {net.parameters[0].name: bias})
     assert courses() <= before
-
-
-def test_a_record_keeps_only_what_was_asked_of_it_last():
-    """Every event that is tried has ends of its own, and each set of instants takes a factor of every law."""
-    signals = warm_test(machine()).signals
-    instants = [np.union1d(np.arange(5.0), [0.01 * n]) for n in range(1, 30)]
-    first, *_, last = [signals.finer(at) for at in instants]
-    assert signals.finer(instants[-1]) is last
-    assert signals.finer(instants[0]) is not first

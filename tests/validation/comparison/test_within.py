@@ -12,10 +12,9 @@ from extras.workbench.appearance import Appearance
 from measured.case import Case, Model
 from measured.doubt import USUAL, widened
 from validation.comparison.compare import Comparison as Errors, channel_error, compare, errors
-from validation.comparison.uncertainty import COVERAGE, RULE
+from validation.comparison.uncertainty import COVERAGE
 from viz.colours import VERDICT
 from viz.data import Comparison, sensors
-from viz.figures.curves import residuals
 from viz.pages import report
 
 
@@ -86,13 +85,6 @@ def test_table_dot_curve_bar_and_page_say_the_same(off):
     page = report._sensors(SimpleNamespace(comparison=found.document(), curves=[shown]))
     assert f">{mine.verdict}{'' if dot.verdict == 'within' else f' ({dot.verdict})'}<" in page
     assert f"{mine.limit_K:.3g}" in page
-
-
-def test_the_rule_is_said_where_it_is_used():
-    one = case()
-    shown = Comparison(one.tests[0], {c.name: c.y for c in one.tests[0].channels}, compare(one).limits["warm"])
-    assert any(RULE in ax.get_xlabel() for ax in residuals(shown).axes)
-    assert RULE in report._sensors(SimpleNamespace(comparison=compare(one).document(), curves=[]))
 
 
 def test_one_rms_of_a_test():

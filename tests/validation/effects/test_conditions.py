@@ -18,6 +18,7 @@ from validation.comparison.predict import predict
 from validation.effects import Scene, effect, extended, kinds
 from validation.effects.during import During
 from validation.effects.registry import with_effects
+from validation.effects.streams.flow import flows
 from validation.effects.time_window import Event, checked, event, holds, share
 from validation.inference.columns import effect_columns
 from validation.inference.conditions import tangent_worth
@@ -130,14 +131,6 @@ def test_a_condition_of_a_test_is_the_effect_itself_there_and_nothing_elsewhere(
         assert got.y == pytest.approx(want.y, abs=1e-6)
 
 
-def test_a_boundary_offset_in_one_test():
-    bare = one_node()
-    held = effect("ambient.offset@ambient in day").extend(bare)
-    for name, step in (("day", 2.0), ("night", 0.0)):
-        y = predict(held, measured(name), {held.parameters[-1].name: 2.0}).y - predict(bare, measured(name), {}).y
-        assert y[-1, 0] == pytest.approx(step, abs=1e-3)
-
-
 BOTH = Event.of({n: [(measured(n).time[0], measured(n).time[-1])] for n in ("day", "dusk")})
 
 
@@ -159,11 +152,6 @@ def test_a_boundary_offset_for_a_part_of_a_test_is_refused():
     case = Case("one", Model(one_node()), (measured("day"),))
     with pytest.raises(InputError, match=r"'ambient\.offset@ambient' cannot hold for a while; a boundary in a whole"):
         add(case, "ambient.offset@ambient in day:600-900s")
-
-
-def test_masses_and_joints_hold_for_no_while():
-    with pytest.raises(InputError, match="cannot hold for a while"):
-        effect("mass@body in day").extend(one_node())
 
 
 def test_a_test_that_is_not_there_is_one_message():
@@ -233,12 +221,6 @@ def test_a_repeat_that_the_others_do_not_predict_is_left_out():
     assert predicted_repeats(e, lid, Event.of({"noon": spans[:1]}), fit.values) == Event.of({"noon": spans[:1]})
 
 
-@pytest.mark.heavy
-def test_a_fan_in_one_test_is_named_with_its_test():
-    whole = diagnose(bench((("noon", ((0.0, 5980.0),)),), 1.0), plan=False)
-    assert whole.odds[0].effects == ("convection.constant@body in noon",)
-
-
 def test_losses_of_a_part_that_are_higher_in_one_test_are_named_as_such():
     """Two declared losses at the core, both 1.4 times in noon: neither of them alone, and no weaker cooling."""
     case, tests = bench(()), []
@@ -259,12 +241,6 @@ def test_losses_of_a_part_that_are_higher_in_one_test_are_named_as_such():
     found = diagnose(replace(case, model=Model(both(1.0)), tests=tuple(tests)), plan=False)
     assert found.odds[0].effects == ("loss.factor.all@core in noon",)
     assert found.odds[0].probability > 0.5  # a meter of the load that was off there is the other way to say it
-
-
-def test_nothing_is_no_event():
-    found = diagnose(bench(()), plan=False)
-    assert found.verdict == "adequate"
-    assert all(h.probability < 0.2 for h in found.events)
 
 
 def test_an_answer_counts_as_its_odds_of_being_right():
@@ -386,12 +362,11 @@ def test_what_blocks_a_face_blocks_the_film_that_an_effect_brought(order):
     assert predict(on_trial, measured("day"), amplitudes).y[-1, 0] < right[-1, 0] - 1.0, "on trial each stands alone"
 
 
-@pytest.mark.parametrize("rows", [3, 4])
-def test_a_record_of_few_rows_is_diagnosed(rows):
-    """With three there is one instant at which a sensor may have come loose."""
+def test_a_record_of_three_rows_is_diagnosed():
+    """There is one instant at which a sensor may have come loose."""
 
     def few(test):
-        at = np.linspace(0, test.time.size - 1, rows).astype(int)
+        at = np.linspace(0, test.time.size - 1, 3).astype(int)
         air = {n: np.broadcast_to(np.asarray(u, float), test.time.shape)[at] for n, u in test.boundaries.items()}
         read = tuple(replace(c, y=c.y[at]) for c in test.channels)
         return replace(
@@ -421,3 +396,10 @@ def test_when_a_sensor_came_loose_is_told_to_the_sample():
     begin, _ = event(effect(lead).condition).spans["dusk"][0]
     assert effect(lead).base.name == "sensor.loose@body"
     assert begin == pytest.approx(slip, abs=step)
+
+
+def test_a_test_may_have_a_colon_in_its_name():
+    net = machine()
+    flow = flows(net)[0].name
+    named, plain = (extended(net, [effect(f"fan.stop@{flow}:{t}:50")]) for t in ("asked: half the flow", "road"))
+    assert len(named.links) == len(plain.links) > len(net.links)

@@ -12,7 +12,6 @@ import validation.effects as folder
 from geom.errors import InputError
 from lumped.integration.balance import balance
 from lumped.model.network import Source
-from lumped.transfer.laws import InputPower
 from lumped.transfer.terms_value import temperature_value
 from measured.sensors.operators import setting
 from validation.comparison.predict import heat_model, predict, record
@@ -224,11 +223,8 @@ def test_a_loss_that_follows_an_input_heats_and_a_film_cools(name, net):
     "name",
     [
         "loss.input@housing",
-        "loss.input@housing|speed_rpm",
         "loss.input@housing|speed_rpm at 0",
         "loss.input@nowhere|speed_rpm at 3000",
-        "loss.input@ambient|speed_rpm at 3000",
-        "conductance.input@housing|speed_rpm at 3000",
         "loss.input@housing|wind at 3000",
     ],
 )
@@ -293,18 +289,6 @@ def test_natural_convection_is_its_amplitude_at_the_rise_it_says(net):
     (law,) = {link.law for link in bigger.links[len(net.links) :]}
     assert law.factor({}) * 40.0**law.temperature.exponent == pytest.approx(1.0)
     assert p.unit.endswith(" at 40 K")
-
-
-@pytest.mark.parametrize("kind", [k for k, cls in KINDS.items() if not cls.at])
-def test_what_scales_with_an_input_says_at_which(kind, net):
-    bigger, _ = grown(first(kind, net), net)
-    assert not [one.name for one in added(bigger, net) if isinstance(one.law, InputPower)]
-
-
-def test_place_of_a_part_with_faces_is_its_name(net):
-    one = effect("convection@flange.right", scene(net)).extend(net)
-    assert one.parameters[-1].unit == "W/m2/K at 10 m/s"
-    assert effect("convection@housing", scene(net)).extend(net).parameters[-1].unit == "W/K at 10 m/s"
 
 
 @pytest.mark.parametrize("name", ["wind@flange.right", "convection@nowhere", "convection"])

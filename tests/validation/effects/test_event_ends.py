@@ -11,7 +11,7 @@ from measured.case import Case, Channel, Model, Test
 from validation.effects import effect
 from validation.effects.time_window import Event
 from validation.inference.decide import is_same_event
-from validation.inference.events import closer_look, further_repeats, refit_ends, timed_event
+from validation.inference.events import further_repeats, refit_ends, timed_event
 from validation.inference.evidence import calibrated_case, pair_evidence, scored, single_evidence
 from validation.inference.hypotheses import Weighed, is_rare, repeats_price
 from validation.inference.refit import laplace
@@ -67,17 +67,6 @@ def test_a_repeat_half_as_long_is_found_in_a_long_day():
     evidence = scored(case, [two], calibrated_case(case))
     more = further_repeats(evidence, laplace(evidence, Weighed((0,))).fit, two, two.event)
     assert np.array(more.spans["day"]) == pytest.approx(np.array(spans), abs=4.0 * STEP_S)
-
-
-def test_a_closer_look_has_the_same_readings_in_shorter_blocks():
-    case = bench()
-    fit, test = calibrated_case(case), case.tests[0]
-    closer, near = closer_look(fit, test, (2000.0, 2600.0), 60.0, fit.values)
-    assert np.diff(near.blocks).min() == 1
-    for s, old in zip(closer.parts, fit.parts, strict=True):
-        assert (s.time.size > old.time.size) == (s.test == test.name)
-        assert closer.error.of(s).shape == (s.time.size, fit.error.size)
-        assert np.mean(s.r) == pytest.approx(np.mean(old.r), abs=0.05)
 
 
 def test_names_and_ends_of_events_do_not_follow_the_order_of_the_tests():

@@ -42,11 +42,6 @@ def test_the_reference_does_not_matter(reference):
     assert heat_of_prior(reference) == pytest.approx((5.0, 200.0))
 
 
-def test_others_are_left_alone():
-    net = with_loss(100.0)
-    assert at_test(net, set(), warm_test(machine())) == net
-
-
 def test_a_temperature_coefficient_has_one_prior_whatever_the_current():
     """Copper's, 0.00393 1/K, at one deviation, in a winding of one watt as of a thousand."""
     net = effect("copper.feedback@copper.winding.field").extend(machine())

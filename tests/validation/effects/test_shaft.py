@@ -17,10 +17,6 @@ def test_stoutest_shaft_is_k_a_over_l():
     assert stub(capacity) == pytest.approx(50.0 * math.pi / 4.0 * 0.08**2 / 0.08)
 
 
-def test_stoutest_shaft_grows_with_the_rotors_length_not_its_mass():
-    assert stub(8.0 * 5000.0) == pytest.approx(2.0 * stub(5000.0))
-
-
 def test_candidate_stops_at_the_stoutest_shaft():
     network = read_network(tomllib.loads(MOTOR))
     cls = kinds()["conduction.shaft"]

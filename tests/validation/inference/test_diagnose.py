@@ -37,11 +37,9 @@ class Exchanged:
 WIND = 16.0  # W/K at 10 m/s
 TRUTHS = {
     "nothing": lambda: Truth(11),
-    "nothing else": lambda: Truth(13),
     "wind": lambda: Truth(10, wind("flange.right", WIND)),
     "brush": lambda: Truth(10, brush),
     "bias": lambda: Truth(10, bias={"yoke": 4.0}),
-    "lag": lambda: Truth(10, lag={"winding.field": 150.0}),
     "exchanged": lambda: Exchanged("winding.field", "yoke"),
 }
 
@@ -58,15 +56,15 @@ def test_a_case_of_held_out_tests_alone_is_refused():
         diagnose(held_out)
 
 
-@pytest.mark.parametrize("name", ["nothing", "nothing else"])
-def test_nothing_missing_is_adequate(name):
-    assert answer(name).verdict == "adequate"
+def test_nothing_missing_is_adequate():
+    assert answer("nothing").verdict == "adequate"
 
 
 def test_hidden_wind_is_named():
     found = answer("wind", plan=True)
     assert found.verdict == "named"
     assert found.named == ("convection@flange.right",)
+    assert found.remainder == ()
     for before, after in (found.candidates[0].rmse_K, found.candidates[0].holdout_rmse_K):
         assert after < before
 
@@ -87,21 +85,12 @@ def test_confounded_effects_are_a_group():
     found = answer("brush", plan=True)
     assert found.verdict in ("group", "named")
     assert "brush.drop@commutator" in found.groups[0]
-
-
-def test_group_gets_a_ranked_plan():
-    found = answer("brush", plan=True)
     gains = [t.predicted_gain / t.hours for t in found.next_tests]
     assert found.verdict == "named" or (gains and gains == sorted(gains, reverse=True))
 
 
 @pytest.mark.parametrize(
-    ("name", "effect"),
-    [
-        ("bias", "sensor.bias@yoke"),
-        ("lag", "sensor.lag@winding.field"),
-        ("exchanged", "sensor.swap@yoke|winding.field"),
-    ],
+    ("name", "effect"), [("bias", "sensor.bias@yoke"), ("exchanged", "sensor.swap@yoke|winding.field")]
 )
 def test_faults_of_sensors_are_data(name, effect):
     found = answer(name)
@@ -140,24 +129,6 @@ def test_what_it_buys_is_told_test_by_test():
     assert all(after < before for before, after, held in told.values() if held)
 
 
-def test_document_has_the_agreed_fields():
-    out = answer("wind", plan=True).document()
-    assert {"verdict", "candidates", "cannot_see", "where", "next_tests"} <= set(out)
-    row = out["candidates"][0]
-    assert {
-        "effect",
-        "score",
-        "threshold",
-        "amplitude",
-        "explained",
-        "rmse_K",
-        "holdout_rmse_K",
-        "confused_with",
-        "decision",
-    } <= set(row)
-    assert {"value", "unit", "ci95"} == set(row["amplitude"])
-
-
 def test_effects_that_tests_cannot_show_are_listed():
     """No channel sits on the shaft, and nothing but its neighbours' calibration feels its mass."""
     assert "mass@shaft" in {h.effect for h in answer("wind", plan=True).cannot_see}
@@ -181,16 +152,6 @@ def test_frozen_channel_is_seen_without_a_model():
     time = broken.tests[0].time
     assert found.bad[time > 1800.0].all()
     assert not found.bad[time < 1740.0].any()
-
-
-def test_a_frozen_channel_is_told_and_accuses_nothing_else():
-    broken, name = with_frozen(TRUTHS["nothing"]().case(), 0)
-    found = diagnose(broken, plan=False)
-    assert found.verdict == "data"
-    assert found.groups == ()
-    assert found.odds[0].hypothesis == f"frozen@{name}"
-    assert (found.odds[0].effects, found.odds[0].causes) == ((f"frozen@{name}",), ())
-    assert "no evidence of a missing effect" in found.words
 
 
 def test_what_is_missing_is_found_beside_a_frozen_channel():

@@ -5,7 +5,6 @@ from math import log, sqrt
 import pytest
 
 from geom.constants import NORMAL_95
-from measured.doubt import TABLE
 from validation.effects.registry import kinds
 from validation.inference.result import Candidate
 from validation.inference.say import impossible_words, interval
@@ -21,27 +20,6 @@ def test_scatter_of_a_correlation_adds_in_squares():
     plain, wide = interval(10.0, 2.0), interval(10.0, 2.0, 0.15)
     added = (wide[1] - 10.0) ** 2 - (plain[1] - 10.0) ** 2
     assert added == pytest.approx((NORMAL_95 * 0.15 * 10.0) ** 2)
-
-
-def test_what_is_not_there_has_no_scatter():
-    assert interval(0.0, 2.0, TABLE["law"].sd) == interval(0.0, 2.0)
-
-
-@pytest.mark.parametrize(
-    ("kind", "empirical"),
-    [
-        ("convection", True),
-        ("windage", True),
-        ("iron", True),
-        ("conduction.bench", False),
-        ("contact", False),
-        ("copper.feedback", False),
-        ("sensor.gain", False),
-        ("loss.factor", False),
-    ],
-)
-def test_films_and_losses_follow_correlations_and_conduction_does_not(kind, empirical):
-    assert kinds()[kind].empirical is empirical
 
 
 @pytest.mark.parametrize(

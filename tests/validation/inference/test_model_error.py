@@ -11,7 +11,6 @@ from lumped.model.network import Parameter
 from lumped.transfer.laws import Fixed, InputPower
 from measured.case import Channel, Recorded, Test
 from measured.doubt import USUAL
-from measured.sensors.operators import lag
 from validation.calibration.calibrate import InnerProduct, minimise
 from validation.calibration.input_steps import MOST, input_steps
 from validation.calibration.model_error import alone, joints, jumps, lumping_errors, model_error, total_sd, with_doubts
@@ -146,14 +145,6 @@ def test_a_boundary_that_moves_is_doubted_by_what_it_does_late():
     behind = 8.0 * (200 * np.exp(-t / 200) - 30 * np.exp(-t / 30)) / 170 - 8.0 * np.exp(-t / 200)
     assert np.max(column(fallen)) == pytest.approx(np.max(behind), rel=0.05)
     assert not column(np.full(time.size, 28.0)).any()
-
-
-def test_a_core_follows_its_node():
-    time = np.arange(0.0, 600.0, 10.0)
-    rise = np.where(time > 0, 1.0, 0.0)[:, None]
-    lag(time, rise, np.array([60.0]))
-    assert rise[-1, 0] == pytest.approx(1.0, abs=1e-3)
-    assert np.all(np.diff(rise[:, 0]) >= 0)
 
 
 def test_model_error_widens_what_a_fit_is_sure_of_and_never_narrows_it(case):

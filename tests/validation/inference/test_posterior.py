@@ -10,7 +10,7 @@ from scipy.integrate import quad
 from scipy.stats import norm
 
 from geom.errors import InputError
-from measured.doubt import PRIOR, TABLE, TEMPER, USUAL, nats_worth, temper, widened
+from measured.doubt import PRIOR, TABLE, TEMPER, USUAL, nats_worth, widened
 from validation.effects import effect
 from validation.inference.decide import SURE, decide
 from validation.inference.evidence import (
@@ -88,14 +88,6 @@ def test_stated_odds_are_a_power_of_what_bayes_gives():
     plain, stated = probabilities(hypotheses, 1.0), probabilities(hypotheses)
     assert stated.sum() == pytest.approx(1.0)
     np.testing.assert_allclose(np.log(stated[0] / stated), TEMPER["sharpness"].share * np.log(plain[0] / plain))
-
-
-def test_what_an_effect_of_another_shape_leaves_names_no_second_one():
-    """However large an effect is: a rival that catches all that 15 % of its shape leave gains less than e^2.5."""
-    for nats in (1.0, 30.0, 300.0, 1e4):
-        left = 0.15**2 * nats
-        assert left / temper(nats) < 2.5
-    assert temper(-5.0) == temper(0.0) == TEMPER["temper"].share
 
 
 def test_prior_shares_sum_to_their_classes():

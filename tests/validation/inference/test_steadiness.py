@@ -10,7 +10,6 @@ from playground import Truth, wind
 
 from measured.sensors.faults import PlainFaults
 from validation.effects import effect
-from validation.inference import say
 from validation.inference.decide import (
     Decision,
     Posterior,
@@ -247,11 +246,3 @@ def test_one_half_that_is_a_little_less_sure_takes_no_name_from_the_other():
     assert choice.groups == ((0,),)
     assert choice.verdict == "group"
     assert unsteady_words(posterior(), choice).endswith("every second reading alone says nothing is missing")
-
-
-def test_alternatives_at_two_places_are_said_to_be_alike_once(monkeypatch):
-    monkeypatch.setattr(say, "_leading_heat", lambda posterior, rows: ())
-    monkeypatch.setattr(say, "_group_words", lambda p, group, *rest: f"{group[0]} or {group[1]}{say.CLAUSE}")
-    choice = Decision("group", ((0, 1), (2, 3)), 0.9)
-    words = say.sentence("group", posterior(), choice, (), (), PlainFaults())
-    assert words == "0 or 1; 2 or 3; these tests and sensors cannot tell them apart"

@@ -1,6 +1,5 @@
 """What a free network knows and the declared one lacks, as effects with place and start."""
 
-import re
 from dataclasses import make_dataclass, replace
 from types import SimpleNamespace
 
@@ -16,7 +15,7 @@ from validation.effects import effect
 from validation.inference.result import Candidate
 from validation.parameters.unknowns import scene_of
 from validation.revision import improvement
-from validation.revision.improvement import Refusal, Step, Supervisor, _added, ended, further_step, singletons
+from validation.revision.improvement import Refusal, Supervisor, _added, further_step, singletons
 from validation.revision.revise import TOGETHER
 from validation.yardstick.suggestions import suggested_effects
 from validation.yardstick.terms import Term
@@ -129,25 +128,6 @@ def test_nothing_is_suggested_where_the_model_predicts_as_well_as_a_free_network
     assert not refused
 
 
-def test_every_end_says_how_near_the_best_plain_model_is_or_what_stops_it(case):
-    def end(some):
-        return ended(some, [Step(errors(some), {})], SILENT, "nothing is offered")
-
-    near, far = end(case), end(without(case, ("body", "ambient")))
-    assert near.plain_K == far.plain_K == min(yardstick(case).left_out.values())
-    both, ours = f"a free network {near.plain_K:.2f} K", "as fitted this model leaves "
-    beside = f"{ours}{near.stairs[-1].left_out_K:.2f} K; each test predicted from the others, {both}"
-    assert near.why == f"nothing is offered; {beside}"
-    assert far.why.startswith(ours)
-    assert far.why.endswith(f"{both}; nothing is offered")
-    worse = without(case, ("body", "ambient"))
-    unseen = [replace(c, tests=(*c.tests[:2], replace(c.tests[2], role="hold-out"))) for c in (case, worse)]
-    rising = ended(unseen[1], [Step(errors(c), {}) for c in unseen], SILENT, "nothing is offered")
-    assert re.search(r"; held-out tests got worse with start: [0-9.]+ -> [0-9.]+ K$", rising.why)
-    short = replace(case, tests=tuple(replace(t, channels=()) for t in case.tests))
-    assert end(short).why.startswith("nothing is offered; no plain model can be learnt from these tests")
-
-
 @pytest.mark.parametrize("groups", [(), (("convection.constant@body", "convection.buoyant@body"),)])
 def test_where_no_name_was_added_the_likeliest_sets_are_tried_and_the_criterion_decides(case, groups):
     """No name was given, or two that cannot be told apart and nobody to ask."""
@@ -195,30 +175,6 @@ def test_what_did_not_predict_is_not_tried_again(case):
     refused = [Refusal(("mass@core",), "more heat capacity", "it was worse")]
     further_step(poorer, Supervisor(singletons, suggest=True), said, 9.0, refused, no_progress)
     assert [r.effects for r in refused].count(("mass@core",)) == 1
-
-
-def test_what_was_tried_last_is_a_table_and_one_clause_of_the_sentence(case):
-    """A supervisor that offers nothing: what a free network has is tried, and does not predict better than a guess."""
-    poorer = without(case, ("body", "ambient"))
-    odds = [SimpleNamespace(causes=(f"{kind}@core",), probability=0.2) for kind in ("mass", "loss.constant")]
-    said = SimpleNamespace(groups=(), odds=tuple(odds), verdict="outside")
-    refused = []
-    further_step(poorer, Supervisor(singletons, suggest=True), said, 9.0, refused, no_progress)
-    assert [r.what for r in refused] == [effect(o.causes[0]).statement for o in odds][: len(refused)]
-    assert all(str(r) == f"not accepted: {r.what}, as {r.why}" for r in refused)
-    assert refused
-
-
-def test_the_sentence_counts_what_the_table_of_refusals_lists(case, monkeypatch):
-    poorer, refused = without(case, ("body", "ambient")), list[Refusal]()
-    refusal = SimpleNamespace(accepted=False, effect=None, checks=(), why="it predicts no better")
-    monkeypatch.setattr("validation.revision.improvement.add", lambda *anything: refusal)
-    odds = [SimpleNamespace(causes=(f"{kind}@core",), probability=0.2) for kind in ("mass", "loss.constant")]
-    said = Said((), odds, "outside", (), (), "nothing explains it")
-    step, _, why = _added(poorer, Supervisor(singletons, suggest=True), said, 9.0, refused, no_progress)
-    assert step is None
-    assert len({r.what for r in refused}) == len(refused) > 2
-    assert why == f"nothing explains it; tried and refused: {len(refused)} other explanations"
 
 
 def test_what_makes_the_model_run_away_is_refused_and_the_next_is_tried(case, monkeypatch):

@@ -10,7 +10,7 @@ from two_bodies import bench
 from measured.case import Test
 from validation.comparison.compare import errors
 from validation.yardstick.free_network import nonnegative
-from validation.yardstick.yardstick import KINDS, yardstick
+from validation.yardstick.yardstick import yardstick
 
 TRUTH = {"joint": 4.0, "film": 2.0, "heat": 80.0}  # W/K, W/K, W: as `two_bodies` declares them
 
@@ -144,13 +144,6 @@ def test_held_out_tests_of_other_sensors_say_nothing(sound, measure):
 def test_where_nothing_may_be_fitted_there_is_no_yardstick(sound):
     unseen = tuple(replace(t, role="hold-out") for t in sound.tests)
     assert yardstick(replace(sound, tests=unseen)) is None
-
-
-def test_the_document_names_all_three(measure):
-    document = measure.document()
-    assert {f"{kind}_K" for kind in KINDS} <= set(document)
-    assert document["over"] == "hold-out"
-    assert {row["name"] for row in document["tests"]} == {"noon", "dawn", "dusk"}
 
 
 @pytest.mark.parametrize(("rows", "terms"), [(1, 12), (3, 12), (30, 12), (200, 60), (40, 1), (5, 0)])

@@ -39,11 +39,6 @@ def test_a_wrong_film_leaves_something_to_learn_and_says_how_much(case, measure)
     assert f"About {left:.1f} K is still to be learnt" in sentence(measure, wrong)
 
 
-def test_plain_models_that_leave_the_same_are_told_once(case, measure):
-    same = replace(measure, hold_out=dict.fromkeys(measure.errors, 2.0))
-    assert sentence(same, errors(case)).endswith("K; every plain model 2.00 K.")
-
-
 def test_a_model_worse_than_none_is_told_so(case, measure):
     wrong = with_film(case, 0.02)
     assert model_error(measure, wrong) > measure.errors["persistence"]
@@ -70,8 +65,3 @@ def test_both_are_judged_on_the_held_out_tests_alone(case, measure):
     result = errors(case)
     (unseen,) = [t for t in result.tests if t.role == "hold-out"]
     assert model_error(measure, result) == pytest.approx(unseen.rmse_K)
-
-
-def test_without_held_out_tests_the_sentence_says_what_is_compared(case):
-    fitted = replace(case, tests=case.tests[:2])
-    assert sentence(yardstick(fitted), errors(fitted)).startswith("Fitted tests")
