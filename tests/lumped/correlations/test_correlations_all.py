@@ -65,12 +65,10 @@ def test_at_rest_it_has_the_right_limit(name, in_silence):
 
 
 @pytest.mark.parametrize("name", EVERY)
-def test_it_names_source_range_and_worked_value(name, in_silence):
+def test_it_names_source_and_range(name, in_silence):
     """A source with a year (or a law of nature) in docstring and answer, and limits; sets of a law share its own."""
-    run, _, _, origin = WORKED[name]
-    info = run()[1]
+    info = WORKED[name][0]()[1]
     text = (inspect.getdoc(declared()[name]) or "") + (inspect.getdoc(declared().get(info.name)) or "")
-    assert origin
     assert info.limits
     assert re.search(r"(18|19|20)\d\d|Stefan", text)
     assert re.search(r"[Ss]ource:|et al\.|Stefan", text)

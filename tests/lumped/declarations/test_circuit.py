@@ -131,6 +131,14 @@ def test_a_coolant_that_freezes_and_a_flow_beyond_the_correlation_say_so():
         steady(net, {"flow_l_min": 1e5}, {"ambient": 20.0, "inlet": 60.0})
 
 
+def test_oil_that_is_too_cold_for_its_film_says_so():
+    """Below 14 degC its Prandtl number is above 2000."""
+    pytest.importorskip("CoolProp")
+    net = network(circuit(coolant="oil", flow_l_min=60.0))
+    with pytest.warns(RangeWarning, match=r"its coolant at \d[.\d]* degC outside 1[34][.\d]* to 160 \(duct_film\)"):
+        steady(net, {}, {"ambient": 20.0, "inlet": 5.0})
+
+
 def test_water_under_pressure_is_liquid_above_100_degC():
     """At 3 bar up to 133 degC, by IAPWS; without a pressure what boils is said."""
     hot = network(circuit(coolant={"name": "water", "pressure_bar": 3.0}))

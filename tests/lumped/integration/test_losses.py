@@ -117,14 +117,6 @@ def test_what_a_network_declares_in_toml_is_what_it_injects():
         "links": {"ws": {"between": ["w", "s"], "G_W_K": 10.0}, "sa": {"between": ["s", "ambient"], "G_W_K": 5.0}},
         "losses": {
             "map": {"kind": "map", "at": "s", "at_speed": [0, 2000], "at_torque": [0, 50], "P_W": [[0, 10], [40, 80]]},
-            "ripple": {
-                "kind": "ripple",
-                "at": "w",
-                "supply_V": 300,
-                "L_H": 2e-3,
-                "switching_Hz": 4000,
-                "R20_ohm": 0.05,
-            },
             "teeth": {
                 "kind": "iron",
                 "at": "s",
@@ -135,7 +127,7 @@ def test_what_a_network_declares_in_toml_is_what_it_injects():
             },
         },
     }
-    given = {"speed_rpm": 1000.0, "torque_Nm": 25.0, "voltage_V": 150.0}
+    given = {"speed_rpm": 1000.0, "torque_Nm": 25.0}
     found = audit(read_network(data), Record(np.linspace(0, 100, 101), given, {"ambient": 20.0}))
     assert found.declared_J["loss:map"] == pytest.approx(32.5 * 100)
     assert found.declared_J["loss:teeth"] == pytest.approx(15.0 * 100)
