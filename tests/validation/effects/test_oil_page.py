@@ -94,6 +94,7 @@ def test_the_table_of_the_page():
 HIDDEN = dict(zip((row[0] for row in rows("what is hidden")), ((4, 8), (8, 0), (4, 4), (8, 8)), strict=True))
 
 
+@pytest.mark.heavy
 @pytest.mark.parametrize("row", rows("what is hidden"), ids=lambda row: row[0])
 def test_what_is_blocked_is_named(row, tmp_path):
     what, printed, size = row
