@@ -73,8 +73,10 @@ class Recorded:
         """The recorded inputs of a test; one that was replaced there is as it is there. None on another time axis."""
         if test.time is not self.grid:
             return None
-        each = {n: (u, self.on_grid.get(n) is u) for n, u in test.inputs.items()}  # in the order of the test
-        return {n: self.inputs[n] if same else np.interp(self.time, test.time, u) for n, (u, same) in each.items()}
+        return {  # in the order of the test
+            name: self.inputs[name] if self.on_grid.get(name) is u else np.interp(self.time, test.time, u)
+            for name, u in test.inputs.items()
+        }
 
 
 @dataclass(frozen=True)
