@@ -200,7 +200,8 @@ def assemblies(
     for place in dict.fromkeys(c.place for c in test.channels):
         columns = [j for j, c in enumerate(test.channels) if c.place == place and np.isfinite(c.y).any()]
         if columns:
-            y = np.nanmean([test.channels[j].y for j in columns], axis=0)
+            read = np.ma.masked_invalid([test.channels[j].y for j in columns])
+            y = read.mean(axis=0).filled(np.nan)  # where none was read there is no mean
             end = equilibrium(test.time / 60.0, y, resolution_K, window_min)
             late = test.time >= test.time[-1] - 60.0 * window_min
             calculated = float(np.mean(predicted[late][:, columns]))

@@ -62,8 +62,9 @@ class Warming:
 
 
 def eq8(minutes: Any, a: Any, b: Any, c: Any) -> Any:
-    """T = a exp(b exp(c t))."""
-    return a * np.exp(b * np.exp(c * np.asarray(minutes, float)))
+    """T = a exp(b exp(c t)); infinite where a trial of the fit is far off."""
+    with np.errstate(over="ignore"):
+        return a * np.exp(b * np.exp(c * np.asarray(minutes, float)))
 
 
 def fit_eq8(minutes: th.Array, T: th.Array, start_C: float | None = None, resolution_K: float = 0.5) -> Warming:
