@@ -8,8 +8,6 @@ taken away, the temperature there; in parts that never had one, their mean.
 Coverage of a kind is the share of instants inside, meaned over places and machines; its interval comes from machines.
 """
 
-from __future__ import annotations
-
 import argparse
 from collections.abc import Iterator
 from dataclasses import dataclass, replace

@@ -9,8 +9,6 @@ least a tenth of the machine's largest; after a step of loss, hot spots and poin
 "wanted" is what the network is built for. Shapes are found anew: the cache of earlier builds is not used.
 """
 
-from __future__ import annotations
-
 import argparse
 import json
 import os

@@ -7,8 +7,6 @@ memory that the residuals and their Gram matrix take, against a test of a quarte
 With `--case` the diagnosis of that case instead, with its whole catalogue and with the first 60 candidates of it.
 """
 
-from __future__ import annotations
-
 import argparse
 import tracemalloc
 from dataclasses import replace

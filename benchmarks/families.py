@@ -13,8 +13,6 @@ else random within them; in as many machines all lengths are random within the w
 each within its own range. What a refusal asks for is done and the machine built again, until it is built.
 """
 
-from __future__ import annotations
-
 import argparse
 import re
 import sys

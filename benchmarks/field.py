@@ -9,8 +9,6 @@ Before, the series-wound motor on 150,000 nodes (188,000 unknowns, nodes split a
 60 s steps. --stack leaves the motor out. ngsolve is compared where it is installed (`uv pip install ngsolve`).
 """
 
-from __future__ import annotations
-
 import argparse
 import importlib.util
 import json

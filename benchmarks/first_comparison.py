@@ -8,8 +8,6 @@ is. The first row is a computer that never ran the tool (no compiled kernel), --
 that was never meshed. CPU time is that of both processes; wall time depends on what else runs.
 """
 
-from __future__ import annotations
-
 import argparse
 import os
 import resource

@@ -6,8 +6,6 @@ Single-thread CPU seconds, best of two. "volume error" is the worst part of the 
 "least quality" is the smallest mean ratio of an element (1 for a regular tetrahedron), thin insulation included.
 """
 
-from __future__ import annotations
-
 import argparse
 import os
 import tempfile

@@ -7,8 +7,6 @@ goes on where it stopped, `--score` only scores. Sizes were measured on machines
 `--cases DIR` asks about folders of another generator and scores them alike.
 """
 
-from __future__ import annotations
-
 import argparse
 from pathlib import Path
 

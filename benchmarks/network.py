@@ -8,8 +8,6 @@ Errors are the largest difference to scipy Radau at rtol 1e-10 over all nodes an
 three for us, after compiling; ensembles and first calls are wall seconds.
 """
 
-from __future__ import annotations
-
 import argparse
 import os
 import subprocess

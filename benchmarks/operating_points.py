@@ -10,8 +10,6 @@ against equal pressure drop, and at rest the heat in against the heat out. A run
 has to say so (`drawn/table_ends.py`).
 """
 
-from __future__ import annotations
-
 import argparse
 import json
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence

@@ -9,8 +9,6 @@ improve --yes` is done. Nothing looks at what is kept back before the end. The y
 --page FILE puts the table of a JSON file into the docs and the README.
 """
 
-from __future__ import annotations
-
 import argparse
 import json
 import re

@@ -10,8 +10,6 @@ browser adds its own share (`docs/images/workbench.py` times it there). The peer
 of the same mesh, which cuts it anew for every frame.
 """
 
-from __future__ import annotations
-
 import argparse
 import json
 import os

@@ -12,8 +12,6 @@ The second peer is the same view live: a trame server draws and sends a picture 
 of pictures, its CPU time the server's, both while it is turned; a picture counts when it has come.
 """
 
-from __future__ import annotations
-
 import argparse
 import base64
 import io

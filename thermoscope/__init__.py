@@ -16,8 +16,6 @@ Nothing heavy is loaded before it is used. What is wrong with the input raises I
 right.
 """
 
-from __future__ import annotations
-
 from typing import TYPE_CHECKING, Any
 
 from thermoscope.rooms import register_rooms

@@ -3,8 +3,6 @@
 Names are loaded when they are used: a command pays for nothing else.
 """
 
-from __future__ import annotations
-
 from typing import TYPE_CHECKING
 
 from geom.lazy import loaded_when_used

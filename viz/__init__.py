@@ -1,7 +1,5 @@
 """See it: fields, residuals and the error falling. Nothing heavy is loaded before the first picture."""
 
-from __future__ import annotations
-
 from typing import TYPE_CHECKING
 
 from geom.lazy import loaded_when_used

@@ -5,8 +5,6 @@
 CPU time and memory are those of all its processes together; what they share counts once.
 """
 
-from __future__ import annotations
-
 import json
 import os
 import resource

@@ -11,8 +11,6 @@ writes what the stages of the first runs took, the median over the cases, into w
 --builds does the same for `model build` by the rows of benchmarks/condensed/builds.py.
 """
 
-from __future__ import annotations
-
 import argparse
 import json
 import os

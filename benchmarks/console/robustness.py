@@ -10,8 +10,6 @@ about. `new` makes its case beside the recordings: after it there is none, or on
 of the case with the button "Calibrate" of a tab pressed.
 """
 
-from __future__ import annotations
-
 import argparse
 import asyncio
 import datetime

@@ -10,8 +10,6 @@ another test or place. A probe that sat elsewhere is nothing that a model should
 *adequate* whose sentence names the sensor or one of its tests.
 """
 
-from __future__ import annotations
-
 import argparse
 import json
 import sys

@@ -7,8 +7,6 @@ wanders, a load 1 % off, a start off ambient, an error of reading of one sigma t
 correlated over 1 to 20 minutes, a logger of 0.1 K. The user's network is off by 20 % in every value and never fitted.
 """
 
-from __future__ import annotations
-
 import argparse
 import json
 from collections import Counter

@@ -8,8 +8,6 @@ flooded; a film that is another in every test; one that is the same in all. Flow
 sensors read within 0.1 K. The highest flow and the highest speed are left out of what the law is found from.
 """
 
-from __future__ import annotations
-
 import argparse
 import json
 from itertools import product

@@ -1,7 +1,5 @@
 """The list of cases: which machine, which class, what is hidden in it and how large. Truth stays in the label."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import asdict, dataclass, replace
 

@@ -7,8 +7,6 @@ assumes. "volume off" is the largest difference of a part's mesh to its exact vo
 numbers; "balance" is heat in less heat out, over heat in. With --page the table goes into docs/benchmarks.md.
 """
 
-from __future__ import annotations
-
 import argparse
 import os
 import resource

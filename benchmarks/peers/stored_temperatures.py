@@ -6,8 +6,6 @@ The file stores a steady state and not the losses that made it. What `thermoscop
 shown as a table. With --page it goes into docs/how-to/import.md.
 """
 
-from __future__ import annotations
-
 import argparse
 import json
 from collections.abc import Mapping

@@ -8,8 +8,6 @@ copper losses that follow temperature. Radau goes from sample to sample at rtol 
 Tangents of some of a network's parameters are held against central differences on the steps of the run.
 """
 
-from __future__ import annotations
-
 import argparse
 import json
 import sys

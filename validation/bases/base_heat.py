@@ -1,7 +1,5 @@
 """Heat that bases carry off: conduction through their feet, then convection and radiation from their faces."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
@@ -45,7 +43,7 @@ class BaseHeat:
     def document(self) -> dict[str, Any]:
         return {**vars(self), "path_W_K": self.path_W_K, "body_W_K": self.body_W_K}
 
-    def against(self, other: BaseHeat) -> str:
+    def against(self, other: "BaseHeat") -> str:
         """How it differs, by mechanism."""
         return ", ".join(
             f"{name} {getattr(self, name):.0f} instead of {getattr(other, name):.0f} W"

@@ -1,7 +1,5 @@
 """What a diagnosis says: the seven verdicts, and the rows of its tables."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Literal
@@ -299,7 +297,7 @@ class Diagnosis(TableResult):
     groups: tuple[tuple[str, ...], ...]
     candidates: tuple[Candidate, ...]
     cannot_see: tuple[DetectionLimit, ...]
-    where: tuple[MissingHeat, ...]
+    where: "tuple[MissingHeat, ...]"
     next_tests: tuple[Experiment, ...]
     rmse_K: float
     floor_K: float
@@ -307,14 +305,14 @@ class Diagnosis(TableResult):
     pulls: tuple[tuple[str, float, float], ...] = ()
     cosine: dict[str, dict[str, float]] = field(default_factory=dict)
     next_sensors: tuple[Experiment, ...] = ()
-    bases: tuple[BaseDeviance, ...] = ()
+    bases: "tuple[BaseDeviance, ...]" = ()
     odds: tuple[Odds, ...] = ()
     explanations: tuple[Explanation, ...] = ()
     p_nothing: float = 1.0
     events: tuple[PossibleEvent, ...] = ()
     remainder: tuple[Remainder, ...] = ()
     doubts: tuple[RecordDoubt, ...] = ()
-    contradiction: Contradiction | None = None
+    contradiction: "Contradiction | None" = None
     question: Question | None = None
     checks: tuple[Check, ...] = ()
     without: tuple[str, ...] = ()

@@ -4,8 +4,6 @@ Each function returns a plotly figure; viz.live.curves.save writes it as HTML, o
 installed. The drawings on paper (viz.figures) need no browser.
 """
 
-from __future__ import annotations
-
 from typing import TYPE_CHECKING
 
 from geom.lazy import loaded_when_used

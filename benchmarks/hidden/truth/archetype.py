@@ -1,7 +1,5 @@
 """A kind of machine with its tests and thermometers, and what its logger would have written."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 

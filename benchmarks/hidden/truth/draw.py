@@ -1,7 +1,5 @@
 """True parameters: lognormal around what the drawing says, each from its own random stream."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 

@@ -1,7 +1,5 @@
 """Heat transfer coefficients (W/m2/K) of films, and losses (W). T in degC, lengths in m, speeds in m/s or rpm, A."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 
 import numpy as np

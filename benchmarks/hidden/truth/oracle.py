@@ -6,8 +6,6 @@ adjusted freely; what is left is weighed against model error of 0.4 K that is co
 size is the amplitude that makes a deviation of ten.
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 

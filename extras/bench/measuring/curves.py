@@ -1,7 +1,5 @@
 """What the warming curves of a case say: eq. 8 and eq. 9 for every sensor, the 3 to 4 % rule, equal tests pooled."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, Literal, TypeVar
@@ -38,7 +36,7 @@ class Curves:
 
     case: th.MeasuredCase
     curves: dict[str, tuple[Curve, ...]]
-    rules: dict[str, tuple[Assembly, ...]]
+    rules: "dict[str, tuple[Assembly, ...]]"
     pooled: dict[tuple[tuple[str, ...], str], Repeats]
 
     @property
@@ -104,7 +102,7 @@ def constant(test: th.Test) -> bool:
     return all(np.std(v[1:]) <= STEADY * max(abs(float(np.mean(v[1:]))), 1e-12) for v in test.inputs.values())
 
 
-def _rules(test: th.Test, predicted: th.Array, resolution_K: float) -> tuple[Assembly, ...]:
+def _rules(test: th.Test, predicted: th.Array, resolution_K: float) -> "tuple[Assembly, ...]":
     window = max((window_min(test, c) for c in test.channels), default=10.0)
     rules, _ = _result_or_reason(lambda: assemblies(test, predicted, resolution_K, window))
     return tuple(rules or ())

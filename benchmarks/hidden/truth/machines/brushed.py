@@ -1,7 +1,5 @@
 """The true series-wound brushed motor, 15 kW, 103 cells: air is blown from the commutator's end (1) to the other."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from hidden.truth import faults, foreign

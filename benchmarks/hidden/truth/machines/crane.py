@@ -4,8 +4,6 @@ Position 0 is the drive end, 1 the blower's. The inverter weakens the field abov
 iron while it switches, at standstill as well.
 """
 
-from __future__ import annotations
-
 import numpy as np
 
 from hidden.truth import faults, foreign

@@ -3,8 +3,6 @@
 Bodies run from the hub (0) to the rim (1). Air enters at the hub and is thrown out between the discs.
 """
 
-from __future__ import annotations
-
 import numpy as np
 
 from hidden.truth import faults, foreign

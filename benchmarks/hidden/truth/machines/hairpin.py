@@ -3,8 +3,6 @@
 Position 0 is the weld side, 1 the bend side; layer 1 lies at the bottom of the slot. The rotor flings oil about.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

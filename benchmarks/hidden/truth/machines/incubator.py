@@ -1,7 +1,5 @@
 """The true incubator, 0.1 kW: a heated plate and a rack in a stirred, insulated chamber; nothing turns. 30 cells."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from hidden.truth import faults, foreign

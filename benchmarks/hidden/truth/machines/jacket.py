@@ -1,7 +1,5 @@
 """The true water-jacket magnet motor, 60 kW peak, potted end windings: 111 cells. Water runs from position 0 to 1."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from hidden.truth import faults, foreign

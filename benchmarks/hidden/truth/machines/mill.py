@@ -3,8 +3,6 @@
 Position 0 is the drive end, 1 the fan's. The shaft is one body from coupling to fan.
 """
 
-from __future__ import annotations
-
 import numpy as np
 
 from hidden.truth import faults, foreign

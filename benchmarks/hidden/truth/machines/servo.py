@@ -1,7 +1,5 @@
 """The true servo motor, 0.1 kW, brushless, on an aluminium bracket: 27 cells, two thermometers."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from hidden.truth import faults, foreign

@@ -1,7 +1,5 @@
 """The true fan-cooled induction motor, 7.5 kW, 132 frame: 103 cells. Position 0 is the drive end, 1 the fan's."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from hidden.truth import faults, foreign

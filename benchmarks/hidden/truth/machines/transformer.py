@@ -3,8 +3,6 @@
 62 cells. Position 0 is the bottom; the coils of both outer limbs are one body, as all phases carry the same current.
 """
 
-from __future__ import annotations
-
 import numpy as np
 
 from hidden.truth import faults, foreign
