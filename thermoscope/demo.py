@@ -1,7 +1,5 @@
 """thermoscope demo: the whole loop on the shipped case with a hidden effect."""
 
-from __future__ import annotations
-
 import os
 import shutil
 import time
@@ -127,13 +125,13 @@ def next_likely(diagnosis: Mapping[str, Any]) -> str:
     return ""
 
 
-def open_demo(case: Path) -> Folder:
+def open_demo(case: Path) -> "Folder":
     """The case with its model as it stands; it serves all that is said and drawn of that model."""
     with progress() as tell:
         return open_case(str(case), tell)
 
 
-def print_comparison(folder: Folder) -> dict[str, Any]:
+def print_comparison(folder: "Folder") -> dict[str, Any]:
     """The comparison, printed."""
     with progress() as tell:
         _, document = compared(folder, tell)
@@ -153,7 +151,7 @@ def machine_picture(case: Path, out: Path) -> Path | None:
     return _picture(out / "1-machine.png", lambda png: viz.regions(s.nodes, png=png).close())
 
 
-def misses(folder: Folder, out: Path) -> Path | None:
+def misses(folder: "Folder", out: Path) -> Path | None:
     """The machine at the end of the held-out test, its sensors labelled by what the calibrated model misses."""
     s = Subject(folder, lambda message: None)
     return _picture(out / "2-misses.png", lambda png: draw_field(s, png))
@@ -193,7 +191,7 @@ def headline(words: str) -> None:
     say(f"=== {words} ===")
 
 
-def old_way(case: Case) -> OneFactorFit:
+def old_way(case: "Case") -> "OneFactorFit":
     """One knob, turned until the right flange agrees on the first road test."""
     from validation.calibration.one_factor_fit import one_factor_fit
 
