@@ -270,16 +270,8 @@ HAIRPIN = Archetype(
         "film.spray": lambda seed: Change({"spray": 0.35}),
         "loss.iron": lambda seed: Change({"iron": 2.2, "eddy": 2.2}),
     },
-    tense={
-        "fit": 0.25,
-        "wall": 0.2,
-        "spray": 0.2,
-        "cooler": 0.15,
-        "iron": 0.15,
-        "ac": 0.2,
-        "wet rotor": 0.25,
-        "still": 0.15,
-    },
+    tense=("fit", "wall", "spray", "cooler", "iron", "ac", "wet rotor", "still"),
+    doubted={"wet rotor": 0.25},
     parts=PARTS,
     passing=(
         Hidden("draught@housing", lambda a: draught("housing", a), 60.0),

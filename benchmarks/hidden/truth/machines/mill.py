@@ -249,16 +249,7 @@ MILL = Archetype(
         "fan": lambda seed: Change({"fan": 0.5}),
         "loss.iron": lambda seed: Change({"iron": 2.2, "eddy": 2.2}),
     },
-    tense={
-        "press": 0.25,
-        "wall": 0.2,
-        "fan": 0.12,
-        "iron": 0.15,
-        "cage": 0.15,
-        "legs": 0.25,
-        "seat-de": 0.25,
-        "still": 0.15,
-    },
+    tense=("press", "wall", "fan", "iron", "cage", "legs", "seat-de", "still"),
     parts={**NODES, "n7": "shaft"},
     passing=(
         Hidden("draught@n13", lambda a: draught("frame", a), 60.0),

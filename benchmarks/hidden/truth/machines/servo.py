@@ -129,7 +129,7 @@ SERVO = Archetype(
         "loss.Eisen": lambda seed: Change({"iron": 2.2}),
         "link.Luftspalt": lambda seed: Change({"bearings": 3.5}),
     },
-    tense={"enamel": 0.2, "shrink": 0.2, "flange": 0.25, "still": 0.12, "iron": 0.2, "grease": 0.3},
+    tense=("enamel", "shrink", "flange", "still", "iron", "grease"),
     parts={"Wicklung": "copper", "Gehaeuse": "case", "Rotor": "rotor"},
     passing=(
         Hidden("draught@case", lambda a: draught("case", a), 1.5),
