@@ -104,7 +104,7 @@ from lumped.numerics.terms import (
 from lumped.schemas.bounds import COLDEST as COLDEST, HOTTEST as HOTTEST, UNITS as KEY_UNITS
 from lumped.schemas.reader import Table as TomlTable, suggestion as suggestion
 from lumped.sources.layer_loss import LayerLoss as LayerLoss
-from lumped.sources.loss_map import MapLoss as MapLoss
+from lumped.sources.loss_laws import MapLoss as MapLoss
 from lumped.sources.loss_laws import (
     BrushLoss as BrushLoss,
     CopperLoss as CopperLoss,
@@ -221,7 +221,7 @@ from validation.calibration.model_error import (
 from validation.comparison.compare import errors as errors, physical as physical
 from validation.comparison.error_budget import model_of as model_of
 from validation.comparison.linearisation import Segment as Segment, segments as segments
-from validation.comparison.moved_inputs import moved_boundaries as moved_boundaries, moved_inputs as moved_inputs
+from validation.comparison.uncertainty import moved_boundaries as moved_boundaries, moved_inputs as moved_inputs
 from validation.comparison.predict import (
     heat_model as heat_model,
     predict as predict,

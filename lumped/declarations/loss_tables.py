@@ -16,11 +16,11 @@ from lumped.sources.loss_laws import (
     CopperLoss,
     EddyLoss,
     IronLoss,
+    MapLoss,
     MeasuredLoss,
     PowerLoss,
     RippleLoss,
 )
-from lumped.sources.loss_map import MapLoss
 from lumped.transfer.laws import CONSTANT, Law, Linear, TemperatureLaw
 
 COLDEST, HOTTEST = -60.0, 300.0  # degC: from the coldest place a machine stands in to beyond what insulation bears

@@ -302,7 +302,7 @@ def _case() -> str:
 def _display(stages: ProgressBar) -> Iterator[Progress]:
     from rich.console import Console
 
-    from validation.counting import listening
+    from validation.threads import listening
 
     console = Console(stderr=True)
 
