@@ -21,7 +21,8 @@ from geom.limits import DROP_BYTES as DROP_BYTES
 from geom.machine_file import completed as completed, library as library, machine_from as machine_from
 from geom.meshing.areas import PartRow as PartRow, part_table as part_table
 from geom.plugins import plugins as plugins
-from geom.table import Table as Table, TableResult as TableResult, cell as cell, percent as percent
+from geom.table import Table as Table, TableResult as TableResult, TableRow as TableRow
+from geom.table import cell as cell, percent as percent
 from geom.storage import cache_folder as cache_folder, write_whole as write_whole
 from geom.text import counted as counted, visible as visible
 from fem.solvers.snapshots import Recipe as Recipe

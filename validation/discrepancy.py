@@ -9,6 +9,7 @@ from scipy.special import gammaincc, kolmogorov
 from geom.arrays import Array
 from geom.constants import NORMAL_95
 from geom.one_thread import one_blas_thread
+from geom.table import TableRow
 from measured.case import Case, Test
 from measured.sensors.blocks import groups
 from validation.calibration.calibrate import no_progress
@@ -25,7 +26,7 @@ LAGS = 20  # usual for the test of Ljung and Box; more lose power
 
 
 @dataclass(frozen=True)
-class Pattern:
+class Pattern(TableRow):
     """What is left in one sensor's residual.
 
     ljung_box_p, periodogram_p : probability of as much structure in white noise
@@ -37,9 +38,6 @@ class Pattern:
     ljung_box_p: float
     periodogram_p: float
     follows: Mapping[str, float]
-
-    def document(self) -> dict:
-        return {**vars(self), "follows": dict(self.follows)}
 
 
 def pattern(segment: Segment, test: Test) -> Pattern:

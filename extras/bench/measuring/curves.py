@@ -153,12 +153,14 @@ Verdict = Literal["calibrated", "allowed", "correct the model", "beyond 7 %"]
 
 
 @dataclass(frozen=True)
-class Assembly:
+class Assembly(th.TableRow):
     """T_e measured and calculated (degC) of one assembly, at equilibrium or, where it was not reached, at the end.
 
     percent : of the measured temperature in degC, as published;  percent_of_rise : of its rise over ambient
     U95_percent : what the reading itself is uncertain by; where it is more than the rule, the rule asks too much
     """
+
+    properties = ("verdict",)
 
     place: str
     steady: bool
@@ -176,9 +178,6 @@ class Assembly:
             (NEVER, "correct the model"),
         )
         return next((word for limit, word in limits if self.percent <= limit), "beyond 7 %")
-
-    def document(self) -> dict[str, Any]:
-        return {**vars(self), "verdict": self.verdict}
 
 
 def assembly(place: str, T_exp: tuple[float, bool], T_calc: float, ambient: float, u_K: float = 0.0) -> Assembly:
