@@ -6,7 +6,6 @@ Single-thread CPU seconds, best of two. "volume error" is the worst part of the 
 "least quality" is the smallest mean ratio of an element (1 for a regular tetrahedron), thin insulation included.
 """
 
-import argparse
 import os
 import tempfile
 from typing import Any
@@ -29,7 +28,7 @@ from geom import (
 from geom.machine_file import machine_from
 from geom.meshing.mesher import _planned
 from geom.solids.cad import solids
-from scripts.published import measured_row as row, print_rows, timed, write_rows
+from scripts.published import benchmark_parser, measured_row as row, print_rows, timed, write_rows
 
 SETTINGS: dict[str, dict[str, Any]] = {
     "coarse": COARSE,
@@ -112,12 +111,11 @@ def library_rows() -> list[dict[str, Any]]:
 
 
 def main() -> None:
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--json", metavar="FILE", help="write the rows there; - is stdout")
+    parser = benchmark_parser(__doc__)
     target = parser.parse_args().json
     found = [*motor_rows(), *library_rows()]
     write_rows(target, "geometry", found)
-    if target != "-":
+    if str(target) != "-":
         print_rows(found)
 
 

@@ -12,7 +12,6 @@ The second peer is the same view live: a trame server draws and sends a picture 
 of pictures, its CPU time the server's, both while it is turned; a picture counts when it has come.
 """
 
-import argparse
 import base64
 import io
 import os
@@ -35,7 +34,7 @@ from geom import build_mesh, load_machine
 from geom.plugins import plugins
 from lumped.model.network import Row
 from measured.case import Channel, Test
-from scripts.published import write_rows
+from scripts.published import benchmark_parser, write_rows
 from viz import split
 from viz.data import Comparison
 from viz.rendering.nodes import SplitMesh
@@ -303,10 +302,9 @@ def row(case: str, measure: str, unit: str, values: list[float]) -> dict[str, An
 
 
 def main() -> None:
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = benchmark_parser(__doc__)
     parser.add_argument("--size-mm", type=float, default=30.0)
     parser.add_argument("--seconds", type=float, default=4.0, help="for which the machine is turned")
-    parser.add_argument("--json", type=Path)
     asked = parser.parse_args()
     if not any(map(shutil.which, BROWSERS)) or find_spec("playwright") is None:
         print("skipped: needs playwright and a browser: apt-get install -y chromium")
