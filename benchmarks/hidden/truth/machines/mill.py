@@ -186,7 +186,8 @@ def shift(rng: Rng, at: Array) -> dict[str, Array]:
     return drive(levels(at, rng, 35.0, 100.0, 5.0), levels(at, rng, 500.0, 1600.0, 7.0), wind)
 
 
-ALL = ("slot", "coil.de", "yoke", "frame", "shield.de", "shield.nde", "bearing.de", "feet")
+READ = {"slot": 0.5, "coil.de": 0.5, "yoke": 0.6, "frame": 0.5, "shield.de": 0.4, "shield.nde": 0.4}
+READ |= {"bearing.de": 0.7, "feet": 0.4}
 
 
 MILL = Archetype(
@@ -201,19 +202,7 @@ MILL = Archetype(
         Plan("shift", "validate", 120.0, shift),
         Plan("late shift", "hold-out", 120.0, shift),
     ),
-    thermometers={
-        b: Spot(b, x)
-        for b, x in (
-            ("slot", 0.5),
-            ("coil.de", 0.5),
-            ("yoke", 0.6),
-            ("frame", 0.5),
-            ("shield.de", 0.4),
-            ("shield.nde", 0.4),
-            ("bearing.de", 0.7),
-            ("feet", 0.4),
-        )
-    },
+    thermometers={body: Spot(body, x) for body, x in READ.items()},
     baths={"bench": Spot("slab", 0.1)},
     missing=(
         Hidden("road wind@n11", lambda a: airflow("shield.de", a, 0.35), 30.0),
@@ -232,7 +221,7 @@ MILL = Archetype(
         "sensor.stem@n9": lambda seed: faults.stem("bearing.de", 0.25),
         "sensor.bias@n13": lambda seed: faults.bias("frame", 4.0),
         "sensor.swap@n11|n12": lambda seed: faults.swapped("shield.de", "shield.nde"),
-        "time.offset@stand": lambda seed: Change(in_test={"stand": faults.clock(ALL, 300.0)}),
+        "time.offset@stand": lambda seed: Change(in_test={"stand": faults.clock(READ, 300.0)}),
         "input.factor@current_A": lambda seed: Change(in_test={"stand": faults.factor("current_A", 1.15)}),
         "ambient.offset@ambient": lambda seed: faults.offset("T_ambient", 5.0),
         "frozen@n12": lambda seed: faults.frozen("shield.nde", 0.4),
