@@ -124,7 +124,7 @@ class Subject:
         """(n_nodes,) degC at the end of the test."""
         return np.asarray(runs.fields(case or self.folder.case, self.test, self.nodes, 1)[1][-1])
 
-    def heat(self) -> "tuple[Heat, dict[str, float], str]":
+    def heat(self) -> tuple["Heat", dict[str, float], str]:
         """Heat flows, and node -> degC, when the machine last runs in the test; and when that is."""
         from viz.figures.flows import heat_flows, last_running_step
 
