@@ -16,6 +16,8 @@
   const watched = new MutationObserver(() => {
     if (!document.getElementById("missing")) return;
     watched.disconnect();
+    // The page begins with the paper of the browser's other pages
+    if (matchMedia("(prefers-color-scheme: dark)").matches && !trame.state.get("dark")) trame.trigger("paper");
     setTimeout(begin, LONGEST);
     setTimeout(() => document.getElementById("viewer") || begin(), document.querySelector(".machine .flat") ? 0 : LATEST);
   });

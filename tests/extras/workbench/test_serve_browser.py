@@ -72,8 +72,9 @@ def page(browser, served):
     assert faults == []
 
 
-def opened(browser, address, width=1280, height=800):
-    tab, faults = browser.new_context(viewport={"width": width, "height": height}).new_page(), []
+def opened(browser, address, width=1280, height=800, scheme="light"):
+    viewport = {"width": width, "height": height}
+    tab, faults = browser.new_context(viewport=viewport, color_scheme=scheme).new_page(), []
     tab.context.set_default_timeout(LONG)
     # a call that is under way while the page is left (reload) ends in a bare object: no error of the page
     tab.on("pageerror", lambda fault: str(fault) == "Object" or faults.append(str(fault)))
@@ -176,6 +177,15 @@ def test_tabs_do_not_disturb_each_other(browser, served, page):
     other.wait_for_selector(".v-theme--dark")
     assert page.locator(".v-theme--dark").count() == 0
     other.context.close()
+    assert faults == []
+
+
+def test_a_dark_browser_has_a_dark_page_at_once(browser, served):
+    tab, faults = opened(browser, served[0], scheme="dark")
+    tab.wait_for_selector(".v-theme--dark")
+    tab.click("[aria-label='light page']")
+    tab.wait_for_selector(".v-theme--light")
+    tab.context.close()
     assert faults == []
 
 
