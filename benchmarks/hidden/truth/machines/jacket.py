@@ -97,10 +97,7 @@ def inside(s: Skeleton, d: Draw) -> list[Film]:
     out = []
     for end, x in ENDS:
         k1, k2 = 15.0 * d.factor(f"endspace.{end}", 0.2), d.between(f"stir.{end}", 0.2, 0.4)
-
-        def h(T: Array, Ta: Array, u: Inputs, k1: float = k1, k2: float = k2) -> float:
-            return films.stirred(u["speed_rpm"], 0.07, k1, k2)
-
+        h = films.stirred(0.07, k1, k2)
         walls = (
             (s.cells(f"winding.{end}"), 0.02),
             (s.cells(f"shield.{end}")[2:], 0.04),

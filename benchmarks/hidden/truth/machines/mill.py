@@ -11,7 +11,7 @@ from hidden.truth.body import Body, Joint, Skeleton
 from hidden.truth.change import Change
 from hidden.truth.draw import Draw
 from hidden.truth.effects import METER, airflow, covered, draught, heating, joined, less, spinning, switched, warming
-from hidden.truth.films import ALPHA, across_gap, free_film, joule, plate_still, radiation
+from hidden.truth.films import ALPHA, across_gap, bearing, free_film, joule, plate_still, radiation
 from hidden.truth.machine import Array, Film, Inputs, Loss
 from hidden.truth.profile import Rng, levels, steady, until
 from hidden.truth.readings import Logger
@@ -136,11 +136,7 @@ def losses(s: Skeleton, d: Draw) -> list[Loss]:
         Loss("bars", s.cells("rotor"), np.full(6, 1 / 6), bars),
     ]
     for end, *_ in ENDS:
-        P = 55.0 * d.factor(f"grease-{end}", 0.25)
-
-        def grease(T: Array, u: Inputs, P: float = P) -> Array:
-            return P * (abs(u["speed_rpm"]) / RATED) ** 1.2 * np.exp(-0.007 * (T - 50.0))
-
+        grease = bearing(55.0 * d.factor(f"grease-{end}", 0.25), RATED, 0.007, 1.2, 50.0)
         out.append(Loss(f"coil.{end}", s.cells(f"coil.{end}"), np.full(4, 0.24 / 4), joule(R)))
         out.append(Loss(f"grease.{end}", s.cells(f"bearing.{end}"), np.full(2, 0.5), grease))
     return out

@@ -100,10 +100,7 @@ def inside(s: Skeleton, d: Draw) -> list[Film]:
     for end, x in ENDS:
         k2 = d.between(f"stir.{end}", 0.2, 0.4)
         k1 = 15.0 * d.factor(f"endspace.{end}", 0.2)
-
-        def h(T: Array, Ta: Array, u, k1: float = k1, k2: float = k2) -> float:
-            return films.stirred(u["speed_rpm"], 0.06, k1, k2)
-
+        h = films.stirred(0.06, k1, k2)
         air = s.cells(f"air.{end}")
         walls = (
             (s.cells(f"winding.{end}"), 0.08),
