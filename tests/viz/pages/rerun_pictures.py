@@ -1,7 +1,5 @@
 """A recording in rerun's own hands: checked by its tool, and pictures by its viewer without a window."""
 
-from __future__ import annotations
-
 import os
 import shutil
 import signal
@@ -67,7 +65,7 @@ def program() -> Iterator[tuple[str, dict[str, str]]]:
 
 
 @contextmanager
-def _viewer() -> Iterator[ViewerClient]:
+def _viewer() -> "Iterator[ViewerClient]":
     """A viewer that listens to this computer only, on a free port; ended afterwards."""
     with socket.socket() as probe:
         probe.bind(("127.0.0.1", 0))
@@ -85,7 +83,7 @@ def _viewer() -> Iterator[ViewerClient]:
             process.wait(timeout=30)
 
 
-def _connected(process: subprocess.Popen, port: int) -> ViewerClient:
+def _connected(process: subprocess.Popen, port: int) -> "ViewerClient":
     """Wait until the viewer listens."""
     from rerun.experimental import ViewerClient
 
