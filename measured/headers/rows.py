@@ -77,7 +77,8 @@ def layout(rows: Sequence[Row], where: str) -> Layout:
         merged: Iterator[str] = accumulate(above[-1], lambda group, cell: cell or group)
         groups = list(merged)
         clear = [len(n) > 1 and _informative([n]) and not {*tokens(split_unit(n)[0])} <= SETPOINT | READ for n in names]
-        once = [names.count(n) == 1 and (t or not _informative([g])) for g, n, t in zip(groups, names, clear)]
+        whole = [t or not _informative([g]) for g, t in zip(groups, clear)]
+        once = [names.count(n) == 1 and t and bool(split_unit(n)[0]) for n, t in zip(names, whole)]  # not a unit alone
         names = [n if once[j] or not n else f"{split_unit(groups[j])[0]} {n}".strip() for j, n in enumerate(names)]
     under = [_padded(rows[i], width) for i in block if i > header and i != units]
     if measured := next((r for r in under if all(split_unit(c)[1] for c in r)), ()):  # "Temperature (°C)" of each
