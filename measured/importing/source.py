@@ -14,32 +14,11 @@ import numpy as np
 
 from geom.arrays import Array
 from geom.description.names import plain_header
-from geom.description.roles import Role
+from geom.description.roles import ROLE_WORDS, Role
 from geom.errors import InputError
-from measured.headers.cells import (
-    EMPTY,
-    SWITCH,
-    WITH_UNIT,
-    is_clock,
-    is_date,
-    is_reading,
-    is_unit,
-    number,
-    split_unit,
-    unit_of,
-)
+from measured.headers.cells import EMPTY, SWITCH, WITH_UNIT, is_clock, is_date, is_unit, number, split_unit, unit_of
 from measured.headers.rows import NO_RECORD, UNIT_NAMES, Layout, called, layout, transposed, trimmed
-from measured.headers.words import (
-    QUANTITY,
-    RUNS,
-    WORDS,
-    is_rise,
-    is_time,
-    quantities_of,
-    roles_of,
-    tokens,
-    without_rise,
-)
+from measured.headers.words import QUANTITY, RUNS, is_rise, is_time, quantities_of, roles_of, tokens, without_rise
 from measured.importing.long_table import side_by_side
 from measured.importing.text import DELIMITERS, decoded, split_cells, text_table
 from measured.recordings.csv_file import CHUNK
@@ -205,16 +184,16 @@ def with_ends(source: Source) -> Source:
     """With what came in and went out as the ends of the coolant, and a note: where its flow was recorded, or, of air,
     where the room was too."""
     words = {c: {w for w in tokens(label) if not w.isdigit()} for c, label in source.labels.items()}
-    hot = {c for c in words if words[c] & QUANTITY["temperature"] or unit_of(source.units[c]) == "degC"}
-    ends = {c: words[c] - QUANTITY["temperature"] - WORDS["air"] for c in hot}
+    air = {c for c in words if words[c] & ROLE_WORDS[Role.AMBIENT]}
+    hot = [c for c in words if words[c] & QUANTITY["temperature"] or unit_of(source.units[c]) == "degC"]
+    ends = {c: words[c] - QUANTITY["temperature"] - ROLE_WORDS[Role.AMBIENT] for c in hot}
     ends = {c: end for c, end in ends.items() if end in ({"in"}, {"out"})}
-    airy = all(words[c] & WORDS["air"] for c in ends)
     roles = [roles_of(label) for c, label in source.labels.items() if c not in ends]
     flows = any("water_flow" in quantities_of(label) for label in source.labels.values())
-    beside = [Role.AMBIENT] in (of[:1] for of in roles) if airy else flows
+    beside = [Role.AMBIENT] in (of[:1] for of in roles) if ends.keys() <= air else flows and not ends.keys() & air
     if len(ends) != 2 or not beside or any(Role.COOLANT in of for of in roles) or not set.isdisjoint(*ends.values()):
         return source
-    what = "the air that cools, beside a room" if airy else "the flow beside them"
+    what = "the air that cools, beside a room" if ends.keys() <= air else "the flow beside them"
     note = f"{source.file.name}: {' and '.join(map(repr, ends))} are taken as those of {what}"
     labels = {**source.labels} | {c: f"coolant {''.join(end)}" for c, end in ends.items()}
     return replace(source, labels=labels, notes=(*source.notes, note))
@@ -266,7 +245,7 @@ def _signals(sheet: str, plan: Layout, rows: Sequence[Sequence[Any]]) -> list[st
 def _cells(plan: Layout, rows: Sequence[Sequence[Any]]) -> list[list[Any]]:
     """Columns of a worksheet."""
     body = [row for row in rows[plan.first :] if any(c is not None and str(c).strip() for c in row)]
-    while body and not any(is_reading(c) for c in body[-1] if c is not None and str(c).strip()):
+    while body and not any(number(c) == number(c) or is_clock(c) for c in body[-1]):
         body.pop()  # remarks and signatures
     return [[row[j] if j < len(row) else None for row in body] for j in range(plan.width)]
 

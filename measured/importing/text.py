@@ -109,8 +109,8 @@ def text_table(file: Path) -> tuple[Layout, Columns, list[str], float | None]:
         start = "".join(itertools.islice(lines, SAMPLE_LINES))[:10_000]
     frames = [m[0] for m in FRAME.finditer(start) if HEXADECIMAL.search(m[0])]
     if 2 * len(frames) > start.count("\n"):
-        right = "the signals in them: let the bus tool that wrote it decode them with its database, as CSV or MF4"
-        raise InputError(f"its rows are frames of a bus, in hexadecimal: {NO_RECORD}", str(file), right)
+        right = "the signals in them by name, as the program that recorded the bus writes them: CSV or .mf4"
+        raise InputError(f"its rows are frames of a bus, which have no names: {NO_RECORD}", str(file), right)
     if 3 * sum(not line.strip() for line in start.splitlines()) > start.count("\n"):  # between every two rows
         lines = lines.edited(lambda line: line if line.strip() else "")
     if len({point[1] for point in POINT.finditer(start)}) == 1:
@@ -370,12 +370,9 @@ def encoding_of(parts: Callable[[], Iterable[bytes]], file: Path) -> str:
         if i == 0 and (encoding := _wide(part)):
             return encoding
         if b"\0" in part:
-            packed = "is packed, as a spreadsheet .ods or an archive is" if part[:2] == b"PK" else "holds zero bytes"
-            raise InputError(
-                f"{packed}, so it is not text: it is not a record",
-                str(file),
-                "CSV or other text, .xlsx, .tdms, .mf4, .parquet or .mat",
-            )
+            what = "is packed, as a spreadsheet .ods is" if part[:2] == b"PK" else "holds zero bytes"
+            right = "CSV or other text, .xlsx, .tdms, .mf4, .parquet or .mat"
+            raise InputError(f"{what}, so it is not text: {NO_RECORD}", str(file), right)
         try:
             decode(part, not part) if utf8 else None
         except UnicodeDecodeError:
