@@ -159,7 +159,6 @@ def is_stage(name: str) -> bool:
     return any(_end(word, STAGE) == len(word) for word in tokens(name))
 
 
-@lru_cache(NAMES)
 def is_rise(header: str) -> bool:
     """Is it a difference of temperatures, or a rate as der(T)?"""
     return (
