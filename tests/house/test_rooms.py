@@ -13,16 +13,7 @@ ROOMS = ("geom", "fem", "lumped", "measured", "validation", "viz", "thermoscope"
 BESIDE = ("simulated", "benchmarks", "scripts", "docs", "tests")  # examples/ is a gallery, side by side
 MOST = 15  # files of a folder beside its __init__: more do not fit on a screen
 # The longest chain of modules that import each other inside a room: what a reader passes from the top to the bottom.
-DEEPEST = {
-    "geom": 8,
-    "fem": 10,
-    "lumped": 15,
-    "measured": 10,
-    "validation": 10,
-    "viz": 7,
-    "thermoscope": 10,
-    "extras": 8,
-}
+DEEPEST = dict(geom=8, fem=10, lumped=15, measured=10, validation=10, viz=7, thermoscope=10, extras=8)
 SENTENCES = 6  # of the page of the architecture, which has one picture
 
 

@@ -169,15 +169,7 @@ BORE, OUTER, SLOTS, POLES = 40.0, 70.0, 24, 4  # mm
 OPENING, TIP, WIDE, DEEP = 3.0, 41.0, 6.0, 60.0  # width, to this radius; width, to this radius
 SURFACE, SHAFT = 39.2, 12.0
 MAGNET = (27.0, 31.0, 20.0)  # from x to x, width
-LAYERS = {
-    "stator": "stator",
-    "winding": "winding",
-    "rotor": "rotor",
-    "magnet": "magnet",
-    "shaft": "shaft",
-    "housing": "housing",
-    "slot": "slot",
-}
+LAYERS = {name: name for name in ("stator", "winding", "rotor", "magnet", "shaft", "housing", "slot")}
 
 
 def on_circle(radius, y):
