@@ -71,13 +71,6 @@ def test_equal_tests_are_pooled_and_repeat():
     assert found.agrees
 
 
-def test_runs_that_differ_too_much_do_not_repeat():
-    runs = tuple(run_of(f"run-{k}", true() + off) for k, off in enumerate((-3.0, 0.0, 3.0)))
-    found = curves(Case("body", Model(network()), runs))
-    assert not next(iter(found.pooled.values())).repeat
-    assert not found.agrees
-
-
 def test_rule_counts_per_assembly():
     """10 K too warm of 68.6 degC is 14 %: beyond 7 %, and the case does not agree; the document has all of it."""
     found = curves(Case("body", Model(network()), (run_of("off", true() - 10.0),)))

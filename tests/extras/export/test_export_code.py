@@ -107,14 +107,20 @@ def test_temperature_laws_jumps_and_single_precision(flags, within):
     assert difference(Compiled(packed(network, {}, Reference(), states(network)), flags), network, given, {}) < within
 
 
-def test_the_code_is_clean_c99_without_allocation(tmp_path):
+@pytest.fixture
+def written(tmp_path):
+    """A folder with the code of the curved network."""
     network, _ = curved()
     for name, text in c_files(packed(network, {}, Reference(), states(network))).items():
         (tmp_path / name).write_text(text)
+    return tmp_path
+
+
+def test_the_code_is_clean_c99_without_allocation(written):
     warned = ["-std=c99", "-Wall", "-Wextra", "-pedantic", "-Werror", "-O2", "-c", "thermal_network.c"]
-    done = subprocess.run(["gcc", *warned], cwd=tmp_path, capture_output=True, text=True)
+    done = subprocess.run(["gcc", *warned], cwd=written, capture_output=True, text=True)
     assert done.returncode == 0, done.stderr
-    used = subprocess.run(["nm", "-u", "thermal_network.o"], cwd=tmp_path, capture_output=True, text=True).stdout
+    used = subprocess.run(["nm", "-u", "thermal_network.o"], cwd=written, capture_output=True, text=True).stdout
     assert not {"malloc", "calloc", "realloc", "free"} & set(used.split())
 
 
@@ -122,16 +128,13 @@ def test_the_code_is_clean_c99_without_allocation(tmp_path):
     ("target", "magic"),
     [("x86_64-windows-gnu", b"\x64\x86"), ("aarch64-macos", b"\xcf\xfa\xed\xfe"), ("x86_64-linux-gnu", b"\x7fELF")],
 )
-def test_zig_compiles_it_for_other_platforms(tmp_path, target, magic):
+def test_zig_compiles_it_for_other_platforms(written, target, magic):
     """Objects only: linking would first build each platform's C library, which takes minutes once."""
     pytest.importorskip("ziglang")
-    network, _ = curved()
-    for name, text in c_files(packed(network, {}, Reference(), states(network))).items():
-        (tmp_path / name).write_text(text)
     zig = [sys.executable, "-m", "ziglang", "cc", "-target", target, "-std=c99", "-c", "thermal_network.c", "-o", "o"]
-    done = subprocess.run(zig, cwd=tmp_path, capture_output=True, text=True)
+    done = subprocess.run(zig, cwd=written, capture_output=True, text=True)
     assert done.returncode == 0, done.stderr
-    assert (tmp_path / "o").read_bytes().startswith(magic)
+    assert (written / "o").read_bytes().startswith(magic)
 
 
 def test_the_header_says_what_a_user_must_know(tmp_path):
