@@ -155,11 +155,13 @@ def test_the_check_sees_a_circle(text):
     assert circle({"a": set(imports(ast.parse(text), {"a", "b"})), "b": {"a"}})
 
 
-@pytest.mark.parametrize("room", ["geom", "lumped", "measured", "validation"])
+@pytest.mark.parametrize("room", ["geom", "lumped", "measured", "validation", "viz"])
 def test_every_public_name_is_where_its_room_says(room):
-    """They are loaded by words that no type checker reads; viz and thermoscope have tests of their own."""
+    """They are loaded by words that no type checker reads; thermoscope has a test of its own."""
     module = importlib.import_module(room)
     assert [name for name in module.__all__ if getattr(module, name) is None] == []
+    with pytest.raises(AttributeError, match=module.__all__[0]):
+        _ = module.nothing
 
 
 def test_no_script_hides_a_room(root):

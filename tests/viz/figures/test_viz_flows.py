@@ -35,16 +35,13 @@ def heat():
     return heat_flows(net, Balance(seconds, through, made, 75.0 * seconds, 25.0 * seconds, np.stack([z, z])))
 
 
-def test_what_is_lost_leaves_or_is_stored(heat):
+def test_what_is_lost_leaves_or_is_stored_and_flows_keep_sign_and_conductance_of_their_link(heat):
     assert heat.losses == pytest.approx({"iron": 100.0})
     assert heat.out == pytest.approx({"housing": 75.0})
     assert heat.stored == pytest.approx(25.0)
-
-
-def test_flow_keeps_the_sign_of_its_link(heat):
     flow = next(f for f in heat.flows if f.kind == "contact")
-    assert (flow.start, flow.end) == ("housing", "yoke")
-    assert flow.watts == pytest.approx(-75.0)
+    assert (flow.start, flow.end, flow.watts) == ("housing", "yoke", pytest.approx(-75.0))
+    assert {f.kind: f.conductance for f in heat.flows} == pytest.approx({"contact": 2.0, "film": 5.0})
 
 
 @pytest.mark.parametrize(("joules", "step"), [([0, 900, 1800, 1800], 1), ([0, 0, 900, 1000], 1), ([0, 0, 0, 0], 2)])
@@ -54,10 +51,6 @@ def test_a_test_that_ends_at_standstill_is_drawn_where_it_last_ran(joules, step)
     seconds, heat = 10.0 * np.arange(4), np.array(joules, float)
     z = np.full((4, 2), 20.0)
     assert last_running_step(net, Balance(seconds, {}, {"loss:iron": heat}, 0 * heat, heat, z)) == step
-
-
-def test_conductance_is_that_of_the_link(heat):
-    assert {f.kind: f.conductance for f in heat.flows} == pytest.approx({"contact": 2.0, "film": 5.0})
 
 
 def test_width_is_conductance_and_colour_is_heat():
@@ -81,18 +74,20 @@ def test_where_nothing_conducts_no_line_is_drawn():
     p.close()
 
 
-def test_ribbons_carry_their_watts():
-    drawn = Heat({"copper": 300.0, "iron": 100.0}, (), {"fan:a": 150.0, "fan:b": 50.0, "housing": 120.0, "shaft": 1.0})
-    text = paper.svg(sankey_of_losses(drawn), "s").replace("\u00a0", " ")
-    shown = ["copper  300 W", "iron  100 W", "400 W", "fan  200 W", "housing  120 W", "warms the machine  79 W"]
-    assert [word for word in shown if word not in text] == []
+OUT = {"fan:a": 150.0, "fan:b": 50.0, "housing": 120.0, "shaft": 1.0}
+RIBBONS = {
+    "warms": ({"copper": 300.0, "iron": 100.0}, OUT, ("iron  100 W", "400 W", "fan  200 W", "warms the machine  79 W")),
+    "cools": ({"copper": 300.0}, {"housing": 390.0}, ("the machine cools  90 W", "390 W", "housing  390 W")),
+}
+
+
+@pytest.mark.parametrize("kind", RIBBONS)
+def test_ribbons_carry_their_watts(kind):
+    """What a cooling machine gives up comes in with its losses; what is small has no name of its own."""
+    losses, out, shown = RIBBONS[kind]
+    text = paper.svg(sankey_of_losses(Heat(losses, (), out)), "s").replace("\u00a0", " ")
+    assert [word for word in ("copper  300 W", *shown) if word not in text] == []
     assert "shaft" not in text
-
-
-def test_what_a_cooling_machine_gives_up_comes_in_with_its_losses():
-    text = paper.svg(sankey_of_losses(Heat({"copper": 300.0}, (), {"housing": 390.0})), "s").replace("\u00a0", " ")
-    shown = ["copper  300 W", "the machine cools  90 W", "390 W", "housing  390 W"]
-    assert [word for word in shown if word not in text] == []
 
 
 @pytest.mark.parametrize(("count", "out"), [(1, 1.0), (14, 1.0), (3, 900.0)])
