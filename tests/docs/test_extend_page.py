@@ -14,9 +14,7 @@ import json, sys
 from pathlib import Path
 import numpy as np
 """
-FAMILY = (
-    HOUSE
-    + """
+FAMILY = """
 from geom.machine_file import machine_from
 from lumped.integration.balance import audit
 from lumped.integration.simulate import Record, simulate
@@ -32,10 +30,7 @@ heat = audit(network, record, {})
 print(json.dumps({"parts": {p.name: p.role for p in machine.parts}, "end": run.y[-1].tolist(), "assumed_W": ASSUMED_W,
                   "mismatch": heat.mismatch, "volume": machine.parts[0].volume}))
 """
-)
-RECORDING = (
-    HOUSE
-    + """
+RECORDING = """
 from measured.recordings.formats import read_recording
 from measured.importing.source import read_source
 
@@ -45,10 +40,7 @@ table, source = read_recording(file), read_source(file)
 last = [table[name][-1] for name in table.columns]
 print(json.dumps({"columns": table.columns, "last": last, "units": source.units}))
 """
-)
-SENSOR = (
-    HOUSE
-    + """
+SENSOR = """
 from measured.recordings.sheet import read_sheet
 from measured.recordings.tables import load_table
 
@@ -66,10 +58,7 @@ first, last = ({n: v[k] for n, v in read.values.items()} for k in (0, -1))
 feeds, hot = {c.name: c.feeds for c in sheet.columns}, [c.name for c in sheet.columns if c.is_temperature]
 print(json.dumps({"first": first, "last": last, "sigma_K": dict(read.sigma_K), "feeds": feeds, "hot": hot}))
 """
-)
-FLUX = (
-    HOUSE
-    + """
+FLUX = """
 from lumped.declarations.network import read_network
 from lumped.integration.simulate import Record, simulate
 
@@ -83,10 +72,7 @@ record = Record(time, {"heat_flux_W_m2": np.full_like(time, 500.0)}, {"air": np.
 run = simulate(network, record, {}, [network.places["plate"].mean])
 print(json.dumps({"rise": float(run.y[-1, 0]) - 20.0}))
 """
-)
-FILM = (
-    HOUSE
-    + """
+FILM = """
 from lumped.declarations.network import read_network
 from lumped.integration.simulate import Record, simulate
 
@@ -98,7 +84,6 @@ time = np.linspace(0.0, 2e4, 300)
 run = simulate(network, Record(time, {}, {"air": np.full_like(time, 20.0)}, 20.0), {}, [network.places["ball"].mean])
 print(json.dumps({"rise": float(run.y[-1, 0]) - 20.0}))
 """
-)
 
 
 @pytest.fixture(scope="module")
@@ -119,13 +104,8 @@ def used(root, tmp_path_factory):
     def run(code, *arguments):
         path = os.pathsep.join([str(home), str(root)])
         environment = {**os.environ, "PYTHONPATH": path, "THERMOSCOPE_CACHE": str(home / "cache")}
-        done = subprocess.run(
-            [sys.executable, "-c", code, *map(str, arguments)],
-            capture_output=True,
-            text=True,
-            env=environment,
-            timeout=500,
-        )
+        command = [sys.executable, "-c", HOUSE + code, *map(str, arguments)]
+        done = subprocess.run(command, capture_output=True, text=True, env=environment, timeout=500)
         assert done.returncode == 0, done.stderr
         return done.stdout
 

@@ -23,6 +23,7 @@ from lumped.build.mesh_choice import (
 )
 from lumped.build.network_size import CONDENSED, FIRST_AXIAL, accurate_network
 from lumped.build.pipeline import CASE, FEW
+from scripts.doubt_table import doubt_table
 from scripts.published import FRONT, HUST, ROOT, between, demo_table, demo_time
 from thermoscope.console.options import ACCURACY
 
@@ -222,3 +223,9 @@ def test_the_small_network_is_compared_at_the_same_points():
 
 def test_no_table_of_it_is_empty():
     assert re.findall(r"<!-- (\S+):begin -->\n<!--", CONDENSATION) == []
+
+
+def test_table_of_doubt_is_current(root):
+    """python -m scripts.doubt_table"""
+    page = (root / "docs" / "diagnosis.md").read_text(encoding="utf-8")
+    assert page.split("<!-- doubt:begin -->\n")[1].split("\n<!-- doubt:end -->")[0] == doubt_table()

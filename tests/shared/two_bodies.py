@@ -38,6 +38,7 @@ def bench(held=(("noon", (LID,)),), size=OPEN, seed=0):
 def two_bodies():
     from lumped.declarations.network import read_network
 
+    load = {"input": "load", "at": 1.0, "exponent": 1.0}
     return read_network(
         {
             "network": {"name": "two", "boundaries": ["ambient"], "settles_s": 2000},
@@ -46,14 +47,6 @@ def two_bodies():
                 "joint": {"between": ["body", "core"], "G_W_K": 4.0, "prior_sd": 0.3},
                 "film": {"between": ["body", "ambient"], "G_W_K": 2.0, "prior_sd": 0.3},
             },
-            "losses": {
-                "heat": {
-                    "kind": "constant",
-                    "at": "core",
-                    "P_W": 80.0,
-                    "prior_sd": 0.1,
-                    "of": {"input": "load", "at": 1.0, "exponent": 1.0},
-                }
-            },
+            "losses": {"heat": {"kind": "constant", "at": "core", "P_W": 80.0, "prior_sd": 0.1, "of": load}},
         }
     )
