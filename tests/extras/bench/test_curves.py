@@ -4,22 +4,15 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from test_drift import network
 
 from extras.bench.measuring.curves import alike, constant, curve, curves
 from extras.bench.measuring.warming import eq8
-from lumped.model.build import bare_network, node_link, node_row, node_source
-from lumped.transfer.laws import Fixed
+from lumped.model.build import node_row
 from measured.case import Case, Channel, Model, Test
 
 MINUTES = np.arange(0.0, 181.0, 1.0)
 AIR = 20.0
-
-
-def network():
-    """One body of 60 kJ/K that 20 W/K hold: 1000 W warm it by 50 K."""
-    net = bare_network("body", {"body": 6e4}, ["ambient"])
-    film = node_link(net, "film", "link", "body", "ambient", Fixed(20.0))
-    return net.extended([film], [node_source(net, "heat", "constant", {"body": 1.0}, Fixed(1000.0))])
 
 
 def run_of(name, y, current=8.0):

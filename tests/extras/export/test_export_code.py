@@ -68,16 +68,8 @@ def curved():
 def test_films_by_reynolds_number(kind):
     """A flow that starts and stops through all regimes, over fluids of -30 to 90 degC."""
     net, given = curved()
-    law = streamed(
-        "flow",
-        0.5,
-        lambda v, fluid: duct_film(v, 0.01, 1.0, fluid),
-        glycol("ethylene", 50),
-        40.0,
-        True,
-        1e-4,
-        3e-4 if "cell" in kind else 0.0,
-    )
+    film, thin = (lambda v, fluid: duct_film(v, 0.01, 1.0, fluid)), 3e-4 if "cell" in kind else 0.0
+    law = streamed("flow", 0.5, film, glycol("ethylene", 50), 40.0, True, 1e-4, thin)
     if "still" in kind:
         law = replace(law, table=replace(law.table, still=net.links[1].law.temperature, exponent=4.0))
     link = node_link(net, "s", "film", "body", "air", law)
