@@ -291,7 +291,8 @@ def test_a_ninth_tab_has_to_wait(folder, servers):
 def test_addresses_that_are_none(folder):
     async def questions(address, session):
         seen = []
-        for headers in ({"Host": "[::1"}, {"Origin": "http://[::1"}, {"Cookie": "thermoscope=\udcff"}):
+        cookie = f"thermoscope-{URL(address).port}=\udcff"
+        for headers in ({"Host": "[::1"}, {"Origin": "http://[::1"}, {"Cookie": cookie}):
             async with session.get(address + "/", headers=headers, allow_redirects=False) as answer:
                 seen.append((answer.status, answer.headers.get("X-Frame-Options")))
         return seen
