@@ -8,12 +8,8 @@ taken away, the temperature there; in parts that never had one, their mean.
 Coverage of a kind is the share of instants inside, meaned over places and machines; its interval comes from machines.
 """
 
-from __future__ import annotations
-
-import argparse
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
-from pathlib import Path
 
 import numpy as np
 from hidden.kinds import KINDS
@@ -24,7 +20,7 @@ from scipy import stats
 
 from lumped.model.network import Row
 from measured.case import Case
-from scripts.published import table, write_rows
+from scripts.published import benchmark_parser, table, write_rows
 from validation import calibrate
 from validation.bands import Place, bands, parameter_posterior
 
@@ -128,11 +124,10 @@ def markdown(found: list[dict]) -> str:
 
 
 def main() -> None:
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = benchmark_parser(__doc__)
     parser.add_argument("--kinds", nargs="+", choices=tuple(KINDS), default=list(REPORTED))
     parser.add_argument("--count", type=int, default=8, help="machines of every kind")
     parser.add_argument("--seeds", choices=tuple(FIRST_SEED), default="dev")
-    parser.add_argument("--json", type=Path)
     parser.add_argument("--all", action="store_true", help="also every place")
     a = parser.parse_args()
     held = []

@@ -9,9 +9,6 @@ least a tenth of the machine's largest; after a step of loss, hot spots and poin
 "wanted" is what the network is built for. Shapes are found anew: the cache of earlier builds is not used.
 """
 
-from __future__ import annotations
-
-import argparse
 import json
 import os
 import sys
@@ -31,7 +28,7 @@ from lumped.build.network_size import NetworkSize, smallest_network
 from lumped.build.pipeline import Meshing
 from lumped.condensation.reduction_error import Errors, errors, merged
 from lumped.model.network import Network
-from scripts.published import measured_row as row, publish, table, write_rows
+from scripts.published import benchmark_parser, measured_row as row, publish, table, write_rows
 
 WANTED = {"mean": 1.0, "hot": 2.0, "point": 2.0}
 AT_RANDOM = {**WANTED, "hot": 3.0}
@@ -168,20 +165,18 @@ def accuracy_table(rows: list[Row]) -> str:
     return table(head, lines)
 
 
-def kept(file: str | None, machines: list[str]) -> list[Row]:
+def kept(file: Path | None, machines: list[str]) -> list[Row]:
     """Rows of an earlier run that are not measured again."""
-    if file in (None, "-") or not Path(str(file)).exists():
-        return []
-    return [r for r in json.loads(Path(str(file)).read_text())["rows"] if r["case"] not in machines]
+    rows = json.loads(file.read_text())["rows"] if file and file.exists() else []
+    return [r for r in rows if r["case"] not in machines]
 
 
 def main() -> None:
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = benchmark_parser(__doc__)
     parser.add_argument("machines", nargs="*", metavar="MACHINE", help="names of the library; all if none is given")
     parser.add_argument("--offline", action="store_true", help="only what condensing a large motor costs")
     parser.add_argument("--coarse", action="store_true", help="a mesh half as fine as of `thermoscope model build`")
     parser.add_argument("--accuracy", type=float, default=2.0, help="percent, as of `thermoscope model build`")
-    parser.add_argument("--json", metavar="FILE", help="write the rows there, - is stdout; other machines' rows stay")
     parser.add_argument("--table", metavar="PAGE", help="put the table between the markers of this Markdown page")
     given = parser.parse_args()
     rows = kept(given.json, given.machines or ([] if given.offline else library()))

@@ -7,9 +7,6 @@ memory that the residuals and their Gram matrix take, against a test of a quarte
 With `--case` the diagnosis of that case instead, with its whole catalogue and with the first 60 candidates of it.
 """
 
-from __future__ import annotations
-
-import argparse
 import tracemalloc
 from dataclasses import replace
 from itertools import pairwise
@@ -23,7 +20,7 @@ from lumped.model.build import bare_network, node_link, node_source
 from lumped.model.network import Network, Parameter
 from lumped.transfer.laws import Fixed, InputPower, Linear, Power
 from measured.case import Case, Channel, Model, Test
-from scripts.published import measured_row as row, print_rows, timed, write_rows
+from scripts.published import benchmark_parser, measured_row as row, print_rows, timed, write_rows
 from thermoscope.case_folder.folder import load_case
 from validation import diagnose
 from validation.comparison.linearisation import segments
@@ -155,8 +152,7 @@ def rows_of(folder: Path) -> list[dict[str, Any]]:
 
 
 def main() -> None:
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--json", type=Path)
+    parser = benchmark_parser(__doc__)
     parser.add_argument("--samples", type=int, default=1_000_000)
     parser.add_argument("--case", type=Path)
     options = parser.parse_args()

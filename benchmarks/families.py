@@ -13,9 +13,6 @@ else random within them; in as many machines all lengths are random within the w
 each within its own range. What a refusal asks for is done and the machine built again, until it is built.
 """
 
-from __future__ import annotations
-
-import argparse
 import re
 import sys
 from collections import Counter
@@ -34,7 +31,7 @@ from geom.families.family import Family
 from geom.families.random_geometry import random_geometry
 from geom.machine_file import families, machine_from
 from geom.meshing.partition import filled, partition
-from scripts.published import write_rows
+from scripts.published import benchmark_parser, write_rows
 
 WITHIN = 0.01  # of the exact volume
 WIDER = 1.5  # bounds of ratios, beyond which machines are drawn
@@ -207,14 +204,13 @@ def refusal(family: Family, seed: int) -> str:
 
 
 def main() -> None:
-    parser = argparse.ArgumentParser(description=__doc__)
+    parser = benchmark_parser(__doc__)
     parser.add_argument("--machines", type=int, default=1000)
     parser.add_argument("--prisms", type=int, default=1000)
     parser.add_argument("--partitions", type=int, default=60)
     parser.add_argument("--beyond", type=int, default=2000)
     parser.add_argument("--family", choices=list(families()))
     parser.add_argument("--winding", help="of all machines; families without such a winding are left out")
-    parser.add_argument("--json", metavar="FILE")
     args = parser.parse_args()
     found = []
     drawn = {

@@ -7,8 +7,6 @@ the part's exact one. FILE gets a line of JSON per machine and is taken up again
 are printed at the end. The families take turns.
 """
 
-from __future__ import annotations
-
 import argparse
 import time
 from itertools import product

@@ -9,9 +9,6 @@ Before, the series-wound motor on 150,000 nodes (188,000 unknowns, nodes split a
 60 s steps. --stack leaves the motor out. ngsolve is compared where it is installed (`uv pip install ngsolve`).
 """
 
-from __future__ import annotations
-
-import argparse
 import importlib.util
 import json
 import resource
@@ -32,7 +29,7 @@ from fem.solvers.streams import Stream, cut, flowing
 from geom import build_mesh, load_machine
 from lumped.build.pipeline import field_of
 from lumped.machine.motor import nominal_coefficients
-from scripts.published import measured_row as row, print_rows, write_rows
+from scripts.published import benchmark_parser, measured_row as row, print_rows, write_rows
 
 SIZES = {"50k": 36, "300k": 66}
 LARGE = {"1M": 99}
@@ -129,8 +126,7 @@ def motor_rows() -> list[dict[str, Any]]:
 
 
 def main() -> None:
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--json", metavar="FILE", help="write the rows there; - is stdout")
+    parser = benchmark_parser(__doc__)
     parser.add_argument("--large", action="store_true", help="a million unknowns as well; scikit-fem takes 8 GiB there")
     parser.add_argument("--stack", action="store_true", help="only the hollow cylinder")
     given = parser.parse_args()

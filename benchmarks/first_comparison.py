@@ -8,9 +8,6 @@ is. The first row is a computer that never ran the tool (no compiled kernel), --
 that was never meshed. CPU time is that of both processes; wall time depends on what else runs.
 """
 
-from __future__ import annotations
-
-import argparse
 import os
 import resource
 import subprocess
@@ -24,7 +21,7 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 
-from scripts.published import measured_row, write_rows
+from scripts.published import benchmark_parser, measured_row, write_rows
 
 ROOT = Path(__file__).resolve().parents[1]
 HUST, TCLAB = ROOT / "cases" / "hust-ipmsm", ROOT / "cases" / "tclab"
@@ -214,10 +211,9 @@ def cpu() -> float:
 
 
 def main() -> None:
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = benchmark_parser(__doc__)
     parser.add_argument("--only", nargs="*", help="rows by name")
     parser.add_argument("--machine", action="store_true", help="also a machine that was never meshed")
-    parser.add_argument("--json", type=Path)
     options = parser.parse_args()
     rows = []
     with tempfile.TemporaryDirectory() as folder:

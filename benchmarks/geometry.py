@@ -6,62 +6,47 @@ Single-thread CPU seconds, best of two. "volume error" is the worst part of the 
 "least quality" is the smallest mean ratio of an element (1 for a regular tetrahedron), thin insulation included.
 """
 
-from __future__ import annotations
-
-import argparse
 import os
 import tempfile
 from typing import Any
 
 import numpy as np
 
-from geom import (
-    COARSE,
-    FINE,
-    Machine,
-    NamedMesh,
-    build_mesh,
-    export_cad,
-    import_step,
-    library,
-    load_machine,
-    mesh_quality,
-    part_table,
-)
+import geom
 from geom.machine_file import machine_from
 from geom.meshing.mesher import _planned
 from geom.solids.cad import solids
-from scripts.published import measured_row as row, print_rows, timed, write_rows
+from scripts.published import benchmark_parser, measured_row as row, print_rows, timed, write_rows
 
 SETTINGS: dict[str, dict[str, Any]] = {
-    "coarse": COARSE,
+    "coarse": geom.COARSE,
     "default": {},
     "150k": {"size_m": 0.015, "segments": 60, "across": 3},
-    "fine": FINE,
+    "fine": geom.FINE,
 }
 
 
-def volumes(mesh: NamedMesh) -> np.ndarray:
+def volumes(mesh: geom.NamedMesh) -> np.ndarray:
     a, b, c, d = (mesh.points[mesh.tets[:, i]] for i in range(4))
     return np.einsum("ij,ij->i", np.cross(b - a, c - a), d - a) / 6
 
 
-def volume_error(machine: Machine, mesh: NamedMesh) -> float:
+def volume_error(machine: geom.Machine, mesh: geom.NamedMesh) -> float:
     """Largest relative difference of a part's mesh volume to its exact volume."""
     found = np.bincount(mesh.region, volumes(mesh), minlength=len(mesh.parts))
     exact = np.array([machine.part(name).volume for name in mesh.parts])
     return float(np.abs(found / exact - 1).max())
 
 
-def anew(machine: Machine, **setting: Any) -> NamedMesh:
+def anew(machine: geom.Machine, **setting: Any) -> geom.NamedMesh:
     """A mesh without what earlier meshes of the machine have left behind."""
     _planned.cache_clear()
-    return build_mesh(machine, **setting)
+    return geom.build_mesh(machine, **setting)
 
 
 def motor_rows() -> list[dict[str, Any]]:
-    motor = load_machine("series-dc-100kw")
-    build_mesh(motor, **COARSE)  # imports
+    motor = geom.load_machine("series-dc-100kw")
+    geom.build_mesh(motor, **geom.COARSE)  # imports
     _, cad, _ = timed(lambda: [solids(part) for part in motor.parts], 2)
     rows = [row("series-dc-100kw", "solids", "s", cad)]
     for name, setting in SETTINGS.items():
@@ -70,18 +55,18 @@ def motor_rows() -> list[dict[str, Any]]:
         rows += [row(case, "mesh", "s", seconds), row(case, "nodes", "1", len(mesh.points))]
         rows += [
             row(case, "tetrahedra", "1", len(mesh.tets)),
-            row(case, "least quality", "1", min(mesh_quality(mesh).values())),
+            row(case, "least quality", "1", min(geom.mesh_quality(mesh).values())),
         ]
         rows += [row(case, "volume error", "1", volume_error(motor, mesh))]
-    _, seconds, _ = timed(lambda: build_mesh(motor, **SETTINGS["150k"]), 2)
+    _, seconds, _ = timed(lambda: geom.build_mesh(motor, **SETTINGS["150k"]), 2)
     rows += [row("series-dc-100kw, 150k", "mesh, refined", "s", seconds)]
     with tempfile.TemporaryDirectory() as folder:
-        build_mesh(motor, **FINE, cache=folder)
-        _, seconds, _ = timed(lambda: build_mesh(motor, **FINE, cache=folder), 2)
+        geom.build_mesh(motor, **geom.FINE, cache=folder)
+        _, seconds, _ = timed(lambda: geom.build_mesh(motor, **geom.FINE, cache=folder), 2)
     return [*rows, row("series-dc-100kw, fine", "mesh from cache", "s", seconds), *rebuild_rows(motor)]
 
 
-def rebuild_rows(motor: Machine) -> list[dict[str, Any]]:
+def rebuild_rows(motor: geom.Machine) -> list[dict[str, Any]]:
     """Solids after a change of the fins, parts built for it, and the way out to STEP and back."""
     table = {"machine": {"family": "series-dc"}, "geometry": {"housing": {"fin_height_mm": 17.0}}}
     changed = machine_from(table, motor.name)
@@ -91,9 +76,9 @@ def rebuild_rows(motor: Machine) -> list[dict[str, Any]]:
         before = set(os.listdir(folder))
         _, again, _ = timed(lambda: [solids(part, folder) for part in changed.parts])
         built = len(set(os.listdir(folder)) - before)
-        _, out, files = timed(lambda: export_cad(motor, folder, ("step",), cache=folder))
-        _, back, _ = timed(lambda: import_step(files["step"]))
-    _, areas, _ = timed(lambda: part_table(motor), 2)
+        _, out, files = timed(lambda: geom.export_cad(motor, folder, ("step",), cache=folder))
+        _, back, _ = timed(lambda: geom.import_step(files["step"]))
+    _, areas, _ = timed(lambda: geom.part_table(motor), 2)
     rows = [
         row(motor.name, "solids after a change of fins", "s", again),
         row(motor.name, "solids built for it", "1", built),
@@ -104,22 +89,21 @@ def rebuild_rows(motor: Machine) -> list[dict[str, Any]]:
 
 def library_rows() -> list[dict[str, Any]]:
     rows = []
-    for name in library():
-        machine = load_machine(name)
+    for name in geom.library():
+        machine = geom.load_machine(name)
         _, seconds, mesh = timed(lambda machine=machine: anew(machine), 2)
         rows += [row(name, "mesh", "s", seconds), row(name, "nodes", "1", len(mesh.points))]
         rows += [row(name, "volume error", "1", volume_error(machine, mesh))]
-        rows += [row(name, "least quality", "1", min(mesh_quality(mesh).values()))]
+        rows += [row(name, "least quality", "1", min(geom.mesh_quality(mesh).values()))]
     return rows
 
 
 def main() -> None:
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--json", metavar="FILE", help="write the rows there; - is stdout")
+    parser = benchmark_parser(__doc__)
     target = parser.parse_args().json
     found = [*motor_rows(), *library_rows()]
     write_rows(target, "geometry", found)
-    if target != "-":
+    if str(target) != "-":
         print_rows(found)
 
 

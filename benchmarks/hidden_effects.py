@@ -7,8 +7,6 @@ goes on where it stopped, `--score` only scores. Sizes were measured on machines
 `--cases DIR` asks about folders of another generator and scores them alike.
 """
 
-from __future__ import annotations
-
 import argparse
 from pathlib import Path
 
@@ -21,11 +19,11 @@ from hidden.page import diagram, markdown
 from hidden.run import Wanted, answered, pairs, run, run_folders
 from hidden.score import met, rows
 
-from scripts.published import json_lines, write_rows
+from scripts.published import benchmark_parser, json_lines, write_rows
 
 
 def arguments() -> argparse.Namespace:
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = benchmark_parser(__doc__)
     parser.add_argument(
         "--cases", type=Path, help="folders of another generator with a truth.json, instead of our kinds"
     )
@@ -46,7 +44,6 @@ def arguments() -> argparse.Namespace:
     parser.add_argument("--samples", type=int, default=200, help="of each of these integrals")
     parser.add_argument("--nested", action="store_true", help="by nested sampling too: needs dynesty, hours")
     parser.add_argument("--sizes", action="store_true", help="measure the units of size anew and stop")
-    parser.add_argument("--json", type=Path)
     parser.add_argument("--page", type=Path, help="the tables of docs/hidden-effects.md, as Markdown")
     return parser.parse_args()
 

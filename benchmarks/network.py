@@ -8,9 +8,6 @@ Errors are the largest difference to scipy Radau at rtol 1e-10 over all nodes an
 three for us, after compiling; ensembles and first calls are wall seconds.
 """
 
-from __future__ import annotations
-
-import argparse
 import os
 import subprocess
 import sys
@@ -27,7 +24,7 @@ from lumped.integration.simulate import Record, simulate
 from lumped.model.build import bare_network, node_link, node_source
 from lumped.model.network import Network, Parameter
 from lumped.transfer.laws import Fixed, InputPower, Linear, Power, Radiation
-from scripts.published import measured_row as row, print_rows, timed, write_rows
+from scripts.published import benchmark_parser, measured_row as row, print_rows, timed, write_rows
 
 MEMBERS = 1000
 
@@ -176,15 +173,14 @@ PARTS = {"compiling": compiling, "sizes": sizes, "ensembles": ensembles, "peers"
 
 
 def main() -> None:
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--json", metavar="FILE", help="write the rows there; - is stdout")
+    parser = benchmark_parser(__doc__)
     parser.add_argument("--only", choices=list(PARTS), nargs="+", default=list(PARTS), help="parts of the benchmark")
     given = parser.parse_args()
     target = given.json
     rows: list[dict[str, Any]] = []
     for part in (PARTS[name] for name in given.only):
         rows += (found := part())
-        print_rows(found, sys.stderr if target == "-" else sys.stdout)
+        print_rows(found, sys.stderr if str(target) == "-" else sys.stdout)
     write_rows(target, "network", rows)
 
 

@@ -10,10 +10,6 @@ against equal pressure drop, and at rest the heat in against the heat out. A run
 has to say so (`drawn/table_ends.py`).
 """
 
-from __future__ import annotations
-
-import argparse
-import json
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from functools import partial
@@ -55,7 +51,7 @@ from lumped.transfer.properties import Fluid, air
 from lumped.transfer.ranges import within_silence
 from lumped.transfer.terms_value import coefficient
 from lumped.transfer.thin_air import density, thin_film, thin_stream
-from scripts.published import publish, table
+from scripts.published import benchmark_parser, publish, table, write_json
 
 ALLOWED = 0.02
 CIRCUITS: dict[str, list[dict[str, object]]] = {
@@ -77,9 +73,8 @@ Key = tuple[str, str]  # what is asked, of what
 
 def main() -> int:
     """The table, and 1 where anything is off by more than ALLOWED or a table ends in silence."""
-    parser = argparse.ArgumentParser(description=(__doc__ or "").splitlines()[0])
+    parser = benchmark_parser(__doc__)
     parser.add_argument("--points", type=int, default=200)
-    parser.add_argument("--json", type=Path)
     parser.add_argument("--page", action="store_true", help="put the table into docs/benchmarks.md")
     options = parser.parse_args()
     with within_silence():
@@ -89,8 +84,7 @@ def main() -> int:
         print(f"{of:25} {kind:35} {count:6} points  worst {100.0 * off:5.2f} %")
     outside, silent, inside = (sum(counts[k] for counts in asked.values()) for k in (1, 2, 3))
     print(f"{outside} points outside a correlation, {silent} of them in silence; {inside} told that are inside")
-    if options.json:
-        options.json.write_text(json.dumps([[*key, *value] for key, value in found.items()], indent=1))
+    write_json(options.json, [[*key, *value] for key, value in found.items()])
     if options.page:
         publish(PAGE, "operating-points", points_tables(found, asked))
     return int(bool(silent or inside) or any(off > ALLOWED for off, _ in found.values()))

@@ -9,9 +9,6 @@ improve --yes` is done. Nothing looks at what is kept back before the end. The y
 --page FILE puts the table of a JSON file into the docs and the README.
 """
 
-from __future__ import annotations
-
-import argparse
 import json
 import re
 import shutil
@@ -28,7 +25,7 @@ import numpy as np
 
 from geom.errors import ThermoscopeError
 from measured.case import Case
-from scripts.published import cpu_s, publish, table
+from scripts.published import benchmark_parser, cpu_s, publish, table, write_json
 from thermoscope.case_folder.folder import find_case, load_case
 from validation.comparison.compare import Comparison, pooled
 from validation.revision.improvement import MOST, Improvement, Supervisor, improve, singletons
@@ -237,11 +234,10 @@ def recordings_table(rows: Sequence[Row]) -> str:
 
 
 def main() -> None:
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = benchmark_parser(__doc__)
     parser.add_argument("--only", nargs="*", help="names of recordings")
     parser.add_argument("--folder", type=Path, help="further recordings, a folder each")
     parser.add_argument("--most", type=int, default=MOST, help="effects to add at most")
-    parser.add_argument("--json", type=Path, help="where the numbers go")
     parser.add_argument("--page", type=Path, help="a JSON file whose table goes into docs and README")
     options = parser.parse_args()
     if options.page:
@@ -260,9 +256,7 @@ def main() -> None:
             begin = time.monotonic()
             rows.append(measured_row(source, options.most, scratch))
             print(f"{source.name}: {time.monotonic() - begin:.0f} s", file=sys.stderr, flush=True)
-            if options.json:
-                document = {"rows": [{**asdict(r), "ratios": r.ratios} for r in rows]}
-                options.json.write_text(json.dumps(document, indent=1), encoding="utf-8")
+            write_json(options.json, {"rows": [{**asdict(r), "ratios": r.ratios} for r in rows]})
         print(recordings_table(rows))
     finally:
         shutil.rmtree(scratch)

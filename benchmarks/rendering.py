@@ -10,9 +10,6 @@ browser adds its own share (`docs/images/workbench.py` times it there). The peer
 of the same mesh, which cuts it anew for every frame.
 """
 
-from __future__ import annotations
-
-import argparse
 import json
 import os
 import sys
@@ -28,7 +25,7 @@ sys.path = [p for p in sys.path if Path(p).resolve() != Path(__file__).resolve()
 from geom import NamedMesh, build_mesh, load_machine
 from lumped.model.network import Row
 from measured.case import Channel, Test
-from scripts.published import measured_row as row, print_rows, timed, write_rows
+from scripts.published import benchmark_parser, measured_row as row, print_rows, timed, write_rows
 from viz import split, write_recording
 from viz.colours import LIGHT
 from viz.data import Comparison
@@ -139,10 +136,9 @@ def click(nodes: SplitMesh) -> list[dict[str, Any]]:
 
 
 def main() -> None:
-    parser = argparse.ArgumentParser(description=__doc__)
+    parser = benchmark_parser(__doc__)
     parser.add_argument("--size-mm", type=float, default=10.0)
     parser.add_argument("--segments", type=int, default=200)
-    parser.add_argument("--json", type=Path)
     options = parser.parse_args()
     load = os.getloadavg()[0]
     mesh = build_mesh(load_machine("series-dc-100kw"), size_m=1e-3 * options.size_mm, segments=options.segments)

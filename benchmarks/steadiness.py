@@ -6,8 +6,6 @@ A line of FILE per case, habit and number of rows; a run that is started again g
 the table into docs/hidden-effects.md.
 """
 
-from __future__ import annotations
-
 import argparse
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace

@@ -12,9 +12,6 @@ The second peer is the same view live: a trame server draws and sends a picture 
 of pictures, its CPU time the server's, both while it is turned; a picture counts when it has come.
 """
 
-from __future__ import annotations
-
-import argparse
 import base64
 import io
 import os
@@ -25,8 +22,8 @@ import sys
 import tempfile
 import time
 from collections import Counter
-from collections.abc import Callable
-from contextlib import suppress
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager, suppress
 from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
@@ -37,7 +34,7 @@ from geom import build_mesh, load_machine
 from geom.plugins import plugins
 from lumped.model.network import Row
 from measured.case import Channel, Test
-from scripts.published import write_rows
+from scripts.published import benchmark_parser, write_rows
 from viz import split
 from viz.data import Comparison
 from viz.rendering.nodes import SplitMesh
@@ -95,14 +92,21 @@ def ours(nodes: SplitMesh, folder: Path) -> Path:
     return page
 
 
-def peer(nodes: SplitMesh, folder: Path) -> Path:
-    """What pyvista keeps of its own view in the browser, of the last field."""
+def cut_open(nodes: SplitMesh) -> Any:
+    """The surface of the mesh cut open, with the last field, as pyvista has it."""
     import pyvista
 
     grid = pyvista.UnstructuredGrid({pyvista.CellType.TETRA: nodes.tets}, nodes.points)
     grid.point_data["T"] = warming(nodes)[1][-1]
+    return grid.clip("x", invert=False).extract_surface(algorithm="dataset_surface")
+
+
+def peer(nodes: SplitMesh, folder: Path) -> Path:
+    """What pyvista keeps of its own view in the browser, of the last field."""
+    import pyvista
+
     p = pyvista.Plotter(off_screen=True, window_size=[1280, 800])
-    p.add_mesh(grid.clip("x", invert=False).extract_surface(algorithm="dataset_surface"), scalars="T")
+    p.add_mesh(cut_open(nodes), scalars="T")
     path = folder / "peer.html"
     p.trame.export_html(path)
     p.close()
@@ -137,12 +141,7 @@ LIVE = (
 
 def served_live(nodes: SplitMesh, folder: Path, seconds: float) -> list[float]:
     """What LIVE says of pyvista's own view, served and drawn by trame; turned as the others are."""
-    import pyvista
-    from playwright.sync_api import sync_playwright
-
-    grid = pyvista.UnstructuredGrid({pyvista.CellType.TETRA: nodes.tets}, nodes.points)
-    grid.point_data["T"] = warming(nodes)[1][-1]
-    cut = grid.clip("x", invert=False).extract_surface(algorithm="dataset_surface").triangulate()
+    cut = cut_open(nodes).triangulate()
     np.savez(folder / "cut.npz", points=cut.points, triangles=cut.regular_faces, T=cut.point_data["T"])
     with socket.socket() as free:
         free.bind(("127.0.0.1", 0))
@@ -152,12 +151,8 @@ def served_live(nodes: SplitMesh, folder: Path, seconds: float) -> list[float]:
     )
     try:
         listening(port)
-        with sync_playwright() as engine:
-            browser = engine.chromium.launch(
-                executable_path=next(filter(None, map(shutil.which, BROWSERS))), args=ARGUMENTS
-            )
-            page, came = browser.new_page(viewport={"width": 1280, "height": 800}), []
-            page.set_default_timeout(1e3 * WAIT_S)
+        with open_page() as (_, page):
+            came: list[int] = []
             page.on("websocket", lambda line: line.on("framereceived", lambda payload: came.append(len(payload))))
             first = first_picture(page, f"http://127.0.0.1:{port}/index.html")
             page.mouse.move(400, 400)
@@ -171,12 +166,25 @@ def served_live(nodes: SplitMesh, folder: Path, seconds: float) -> list[float]:
             page.mouse.up()
             pictures = [size for size in came if size > PICTURE]
             used = cpu_of(server.pid) - before
-            browser.close()
     finally:
         server.terminate()
         server.wait()
     each = 1e3 / len(pictures) if pictures else 0.0
     return [first, len(pictures) / spent, 1e-6 * sum(pictures) / spent, each * used]
+
+
+@contextmanager
+def open_page() -> Iterator[tuple[Any, Any]]:
+    """A browser with an empty page."""
+    from playwright.sync_api import sync_playwright
+
+    with sync_playwright() as engine:
+        path = next(filter(None, map(shutil.which, BROWSERS)))
+        browser = engine.chromium.launch(executable_path=path, args=ARGUMENTS)
+        page = browser.new_page(viewport={"width": 1280, "height": 800})
+        page.set_default_timeout(1e3 * WAIT_S)
+        yield browser, page
+        browser.close()
 
 
 def listening(port: int) -> None:
@@ -196,13 +204,7 @@ def cpu_of(pid: int) -> float:
 
 def looked(file: Path, seconds: float, plays: bool) -> list[float]:
     """What MEASURES says, after the bytes; played only where the page can."""
-    from playwright.sync_api import sync_playwright
-
-    with sync_playwright() as engine:
-        path = next(filter(None, map(shutil.which, BROWSERS)))
-        browser = engine.chromium.launch(executable_path=path, args=ARGUMENTS)
-        page = browser.new_page(viewport={"width": 1280, "height": 800})
-        page.set_default_timeout(1e3 * WAIT_S)
+    with open_page() as (browser, page):
         page.add_init_script(COUNT)
         clock = browser.new_browser_cdp_session()
         before, first = cpu(clock), first_picture(page, file.as_uri())
@@ -214,7 +216,6 @@ def looked(file: Path, seconds: float, plays: bool) -> list[float]:
         if plays:
             page.keyboard.press(" ")
             out += moved(page, clock, seconds, lambda page, step: page.wait_for_timeout(50))
-        browser.close()
     return out
 
 
@@ -305,10 +306,9 @@ def row(case: str, measure: str, unit: str, values: list[float]) -> dict[str, An
 
 
 def main() -> None:
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = benchmark_parser(__doc__)
     parser.add_argument("--size-mm", type=float, default=30.0)
     parser.add_argument("--seconds", type=float, default=4.0, help="for which the machine is turned")
-    parser.add_argument("--json", type=Path)
     asked = parser.parse_args()
     if not any(map(shutil.which, BROWSERS)) or find_spec("playwright") is None:
         print("skipped: needs playwright and a browser: apt-get install -y chromium")

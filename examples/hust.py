@@ -10,8 +10,6 @@ cases/hust-ipmsm/README.md and writes them to --out, with that of the front page
 puts them there.
 """
 
-from __future__ import annotations
-
 import argparse
 import json
 import sys

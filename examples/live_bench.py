@@ -6,8 +6,6 @@ The motor is a program of its own that serves rows over TCP and takes set points
 the bench may not read until the end.
 """
 
-from __future__ import annotations
-
 import json
 import subprocess
 import sys

@@ -7,8 +7,6 @@ restricts the catalogue to paths and the sensors' lag. The third recording is on
 cases/tclab/README.md and writes it to --out; scripts/published.py puts it there.
 """
 
-from __future__ import annotations
-
 import argparse
 import sys
 from collections.abc import Callable

@@ -5,7 +5,7 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import reduce
 from html import escape
-from typing import Any
+from typing import Any, ClassVar
 
 from geom.errors import MissingDependency
 
@@ -90,6 +90,27 @@ class TableResult:
     def _repr_html_(self) -> str:
         head = f"<p><b>{escape(repr(self).splitlines()[0])}</b></p>"
         return head + "".join(t.html() for t in self.tables() if t.rows)
+
+
+class TableRow:
+    """A row of a table.  properties : of it, that its document has behind all fields"""
+
+    properties: ClassVar[tuple[str, ...]] = ()
+
+    def document(self) -> dict[str, Any]:
+        """For JSON: every field, then the properties that it names."""
+        return select_fields(self, *vars(self), *self.properties)
+
+
+def select_fields(result: object, *names: str) -> dict[str, Any]:
+    """Attributes of a result by name, for JSON: rows in them as their documents, tuples as lists."""
+
+    def plain(value: Any) -> Any:
+        if hasattr(value, "document"):
+            return value.document()
+        return [plain(v) for v in value] if isinstance(value, tuple | list) else value
+
+    return {name: plain(getattr(result, name)) for name in names}
 
 
 def value_at(holder: object, path: str) -> Any:

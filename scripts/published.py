@@ -55,11 +55,17 @@ def demo_time(demo: Mapping[str, Any]) -> str:
     return f"That run took {demo['core_s']} s of one core in all; {demo['seconds']} s on {on}."
 
 
+def benchmark_parser(description: str | None) -> argparse.ArgumentParser:
+    """The options of a benchmark begin with --json FILE.  description : the docstring of its file, as it stands"""
+    parser = argparse.ArgumentParser(description=description, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--json", type=Path, metavar="FILE", help="write the rows there; - is stdout")
+    return parser
+
+
 def machine_arguments(description: str | None) -> argparse.Namespace:
     """MACHINE ... --json FILE --page, of a benchmark that keeps rows by machine and publishes them on a page."""
-    parser = argparse.ArgumentParser(description=description)
-    parser.add_argument("machines", nargs="*", default=[], metavar="MACHINE")
-    parser.add_argument("--json", type=Path, metavar="FILE", help="write the rows there; other machines' rows stay")
+    parser = benchmark_parser(description)
+    parser.add_argument("machines", nargs="*", default=[], metavar="MACHINE", help="all others' rows stay in FILE")
     parser.add_argument("--page", action="store_true", help="put the tables of FILE into docs/condensation.md")
     return parser.parse_args()
 
@@ -115,16 +121,21 @@ def add_lines(file: Path, *rows: Mapping[str, Any]) -> None:
         out.writelines(f"{json.dumps(row)}\n" for row in rows)
 
 
-def write_rows(file: Path | str | None, benchmark: str, rows: Sequence[Mapping[str, Any]], **more: Any) -> None:
-    """The rows of a benchmark with its name, this computer and the date, as JSON; "-" is stdout, None nowhere."""
+def write_rows(file: Path | None, benchmark: str, rows: Sequence[Mapping[str, Any]], **more: Any) -> None:
+    """The rows of a benchmark with its name, this computer and the date, as `write_json` writes them."""
     computer = f"{platform.machine()}, {os.cpu_count()} cores, Python {platform.python_version()}"
     head = {"benchmark": benchmark, "computer": computer, "date": datetime.date.today().isoformat(), **more}
-    text = json.dumps({**head, "rows": rows}, indent=1)
+    write_json(file, {**head, "rows": rows})
+
+
+def write_json(file: Path | None, document: Any) -> None:
+    """What a benchmark found; "-" is stdout, None nowhere."""
+    text = json.dumps(document, indent=1)
     if str(file) == "-":
         print(text)
     elif file:
-        Path(file).parent.mkdir(parents=True, exist_ok=True)
-        Path(file).write_text(text)
+        file.parent.mkdir(parents=True, exist_ok=True)
+        file.write_text(text, encoding="utf-8")
 
 
 def publish(page: Path, marker: str, table: str) -> None:

@@ -6,8 +6,6 @@ python scripts/walk.py --case tclab        # and the files from a case to its ve
 python scripts/walk.py --page              # both walks, as docs/architecture.md shows them
 """
 
-from __future__ import annotations
-
 import argparse
 import ast
 import os

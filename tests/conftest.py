@@ -59,10 +59,11 @@ def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item
     A heavy file that begins last keeps one of two workers waiting for its end.  First of all the rules of the house,
     which run no network: in a new checkout one worker compiles the kernels meanwhile, and the other finds them.
     """
-    turn = config.getoption("--turn")
+    turn, nightly = config.getoption("--turn"), [item for item in items if item.get_closest_marker("nightly")]
+    for item in nightly:  # a new warning of a browser or a wheel's installer is no reason to stop a landing
+        item.add_marker(pytest.mark.filterwarnings("default"))
     if turn is not None:
         # Nightly tests whose turn it is not: of their files, in the order of their names, every fifth has its turn
-        nightly = [item for item in items if item.get_closest_marker("nightly")]
         files = sorted({item.path for item in nightly})
         later = {item for item in nightly if files.index(item.path) % PARTS != turn % PARTS}
         config.hook.pytest_deselected(items=list(later))

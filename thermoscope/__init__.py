@@ -16,18 +16,13 @@ Nothing heavy is loaded before it is used. What is wrong with the input raises I
 right.
 """
 
-from __future__ import annotations
-
 from typing import TYPE_CHECKING, Any
 
 from thermoscope.rooms import register_rooms
 
 if TYPE_CHECKING:
-    from geom.errors import (
-        InputError as InputError,
-        MissingDependency as MissingDependency,
-        ThermoscopeError as ThermoscopeError,
-    )
+    from geom.errors import InputError as InputError, MissingDependency as MissingDependency
+    from geom.errors import ThermoscopeError as ThermoscopeError
     from lumped.declarations.network import load_network as load_network, read_network as read_network
     from lumped.integration.record import Record as Record
     from lumped.integration.simulate import Run as Run, simulate as simulate

@@ -24,7 +24,7 @@ from validation.bands import Bands, ParameterPosterior, Place, at_end, band_stre
 from validation.bands.posterior import rows_read
 from validation.comparison.error_budget import model_of
 from validation.comparison.predict import record
-from validation.counting import counted
+from validation.threads import counted
 
 SMALL = 40  # states up to which bands cost less than a run's other work
 JUMP_S = 1e-6  # far below any step, far above the rounding of a day in seconds

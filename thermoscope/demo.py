@@ -1,7 +1,5 @@
 """thermoscope demo: the whole loop on the shipped case with a hidden effect."""
 
-from __future__ import annotations
-
 import os
 import shutil
 import time
@@ -16,7 +14,7 @@ import typer
 import viz as viz  # so named in the wheel as well
 from geom.errors import InputError, MissingDependency
 from geom.table import Table, percent
-from thermoscope.case_folder.folder import find_case
+from thermoscope.case_folder.folder import Folder, find_case
 from thermoscope.case_folder.settings import read_settings
 from thermoscope.commands.explain.diagnose import diagnosed, diagnosis_summary
 from thermoscope.commands.model.build import build_machine
@@ -35,7 +33,6 @@ from validation.parameters.unknowns import value_words
 
 if TYPE_CHECKING:
     from measured.case import Case
-    from thermoscope.case_folder.folder import Folder
     from validation.calibration.one_factor_fit import OneFactorFit
 
 CASE, KNOB, FLANGE = "road-test", "fan.flow", "flange.right"
@@ -205,7 +202,7 @@ def mesh_errors(folder: Folder) -> None:
         cached_errors(folder.built, monitored_places(folder))
 
 
-def old_way(case: Case) -> OneFactorFit:
+def old_way(case: "Case") -> "OneFactorFit":
     """One knob, turned until the right flange agrees on the first road test."""
     from validation.calibration.one_factor_fit import one_factor_fit
 

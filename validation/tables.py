@@ -20,14 +20,6 @@ SENSORS = (
 )
 
 
-class TableRow:
-    """A row of a table; its document has every field, tuples as lists."""
-
-    def document(self) -> dict:
-        """JSON of the row."""
-        return {k: list(v) if isinstance(v, tuple) else v for k, v in vars(self).items()}
-
-
 def comparison_tables(document: Document) -> tuple[Table, ...]:
     """The tests, the sensors of each test, and the roles that nobody declares."""
     sensors = (sensors_table(f"{t['name']} ({t['role']})", [t]) for t in document["tests"])

@@ -1,17 +1,36 @@
 """Work side by side: whole pieces of it in threads. The kernel and BLAS free Python's lock."""
 
 import os
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from concurrent.futures import ThreadPoolExecutor, as_completed
+from contextlib import contextmanager
+from contextvars import ContextVar
 from itertools import chain
 from typing import Protocol, TypeVar
 
 from geom.arrays import Array
-from validation.counting import counted
 
+_listener: ContextVar[Callable[[str], None]] = ContextVar("listener", default=lambda message: None)
 WORTH_A_THREAD = 3000  # states times instants below which starting threads costs more than it saves
 R = TypeVar("R")
 T = TypeVar("T")
+
+
+@contextmanager
+def listening(tell: Callable[[str], None]) -> Iterator[None]:
+    """In here `tell` hears of every piece of a counted loop."""
+    token = _listener.set(tell)
+    try:
+        yield
+    finally:
+        _listener.reset(token)
+
+
+def counted(what: str, pieces: Iterable[T], count: int) -> Iterator[T]:
+    """The pieces one by one, each announced as "WHAT (3 of 200)"; without words where they are part of something."""
+    for number, piece in enumerate(pieces, 1):
+        _listener.get()(f"{what} ({number} of {count})".strip())
+        yield piece
 
 
 class Timed(Protocol):

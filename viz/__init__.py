@@ -1,7 +1,5 @@
 """See it: fields, residuals and the error falling. Nothing heavy is loaded before the first picture."""
 
-from __future__ import annotations
-
 from typing import TYPE_CHECKING
 
 from geom.lazy import loaded_when_used
@@ -17,13 +15,8 @@ if TYPE_CHECKING:
     from viz.figures.flows import sankey_of_losses as sankey_of_losses
     from viz.machine.animation import animate as animate
     from viz.machine.arrows import flux_arrows as flux_arrows
-    from viz.machine.field import (
-        cutaway as cutaway,
-        difference as difference,
-        machine_row as machine_row,
-        pair as pair,
-        uncertainty as uncertainty,
-    )
+    from viz.machine.field import cutaway as cutaway, difference as difference, machine_row as machine_row, pair as pair
+    from viz.machine.field import uncertainty as uncertainty
     from viz.machine.misses import misses as misses
     from viz.machine.missing import missing_in_machine as missing_in_machine
     from viz.machine.network import network_in_machine as network_in_machine

@@ -1,7 +1,5 @@
 """A run of a bench that steers itself, as its journal has it: odds over bench time, set points, and where it stands."""
 
-from __future__ import annotations
-
 import json
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -80,7 +78,7 @@ class BenchRun:
         return bool(sets) and bool(sets[-1].get("waits"))
 
 
-def bench_run(run: BenchRun, *, theme: Theme = LIGHT) -> go.Figure:
+def bench_run(run: BenchRun, *, theme: Theme = LIGHT) -> "go.Figure":
     """The odds of a live bench over bench time, and the set points beneath."""
     out = figure(theme, (0.6, 0.4))
     for row, (lines, shape) in enumerate(((run.odds, "linear"), (run.set_points, "hv")), 1):

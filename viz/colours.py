@@ -3,8 +3,6 @@
 Colour scales span the data and are marked at round numbers.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
@@ -45,7 +43,7 @@ def rgb(colour: str) -> tuple[int, ...]:
 
 
 @lru_cache(maxsize=1)
-def heat() -> LinearSegmentedColormap:
+def heat() -> "LinearSegmentedColormap":
     """Blue through magenta to yellow; lightness rises evenly from 0.47 to 0.93 (OKLab), so nothing turns black."""
     from matplotlib.colors import LinearSegmentedColormap
 
@@ -57,7 +55,7 @@ def heat() -> LinearSegmentedColormap:
 
 
 @lru_cache(maxsize=1)
-def power() -> LinearSegmentedColormap:
+def power() -> "LinearSegmentedColormap":
     """Pale sand to dark red, lightness falling evenly from 0.86 to 0.36 (OKLab): heat that flows."""
     from matplotlib.colors import LinearSegmentedColormap
 
@@ -68,7 +66,7 @@ def power() -> LinearSegmentedColormap:
 
 
 @lru_cache(maxsize=1)
-def missing() -> LinearSegmentedColormap:
+def missing() -> "LinearSegmentedColormap":
     """Blue through light grey to vermilion: too little, nothing, too much."""
     from matplotlib.colors import LinearSegmentedColormap
 

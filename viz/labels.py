@@ -1,7 +1,5 @@
 """Labels that do not sit on each other."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
@@ -33,7 +31,7 @@ def spread_labels(values: Sequence[float], low: float, high: float, gap: float) 
 
 
 def end_labels(
-    ax: Axes, ends: Sequence[float], names: Sequence[str], colours: Sequence[str], size: float = 8.5
+    ax: "Axes", ends: Sequence[float], names: Sequence[str], colours: Sequence[str], size: float = 8.5
 ) -> None:
     """Names at the right edge of the axes, each tied to the end of its line."""
     low, high = ax.get_ylim()

@@ -5,8 +5,6 @@
 CPU time and memory are those of all its processes together; what they share counts once.
 """
 
-from __future__ import annotations
-
 import json
 import os
 import resource
@@ -18,7 +16,7 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
-from scripts.published import machine_arguments, publish, table
+from scripts.published import machine_arguments, publish, table, write_json
 
 PAGE = Path("docs/condensation.md")
 HEAD = ("machine", "unknowns", "mesh leaves (%)", "at", "states", "CPU (s)", "wall (s)", "memory (GB)", "exit code")
@@ -77,8 +75,7 @@ def main() -> None:
     for machine in given.machines:
         found = [*(r for r in found if r["machine"] != machine), row(machine)]
         print(found[-1], flush=True)
-        if given.json:
-            given.json.write_text(json.dumps(found, indent=1))
+        write_json(given.json, found)
     if given.page:
         publish(PAGE, "builds", builds_table(found))
 

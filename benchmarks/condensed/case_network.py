@@ -7,8 +7,6 @@ Steady, errors are in percent of the part's own rise, at least a tenth of the ma
 from 30 s to two hours, in percent of the machine's largest rise at that time. Rated losses, fluids and streams.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path

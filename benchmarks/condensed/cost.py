@@ -1,7 +1,5 @@
 """What condensing a large motor costs: CPU, memory, matrices factorised; `condensation.py --offline` writes it down."""
 
-from __future__ import annotations
-
 import time
 from collections.abc import Iterator
 from contextlib import contextmanager

@@ -7,8 +7,6 @@ x5, and twelve where each stands as it is or at an end. Steady, at rated losses:
 furthest off, as in case_network.py.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from typing import Any

@@ -3,8 +3,6 @@
 Temperatures are rises over the surroundings (K). Fluids are lumped nodes, with their streams, in both.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
@@ -49,7 +47,7 @@ class Pair:
     streams: Floats
 
     @classmethod
-    def of(cls, found: NetworkSize) -> Pair:
+    def of(cls, found: NetworkSize) -> "Pair":
         """Load cases: rated losses, losses drawn at random, half of rated with a warm inlet or another draw."""
         machine, network, zones = found.built.machine, found.built.network, list(found.reduction.zones)
         rated, fluids = rated_watts(machine, network), fluid_nodes(network)
@@ -138,7 +136,7 @@ class Pair:
         z[[self.network.column(name) for name in self.fluids]] = u
         return z
 
-    def smaller(self, states: int) -> Pair:
+    def smaller(self, states: int) -> "Pair":
         """The same with a network of at most so many states."""
         return replace(self, network=self.reduction.network(tolerance=0.0, max_states=states))
 

@@ -11,9 +11,6 @@ writes what the stages of the first runs took, the median over the cases, into w
 --builds does the same for `model build` by the rows of benchmarks/condensed/builds.py.
 """
 
-from __future__ import annotations
-
-import argparse
 import json
 import os
 import pty
@@ -30,7 +27,7 @@ from itertools import pairwise, product
 from pathlib import Path
 from statistics import median
 
-from scripts.published import publish, table
+from scripts.published import benchmark_parser, publish, table, write_json
 from thermoscope.console.progress_bar import PREPARING
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -142,10 +139,9 @@ def keep_usual(took: dict[str, list[dict[str, float]]]) -> None:
 
 def main() -> None:
     """A row per case and run."""
-    parser = argparse.ArgumentParser(description=__doc__)
+    parser = benchmark_parser(__doc__)
     parser.add_argument("--only", nargs="+", default=CASES)
     parser.add_argument("--commands", nargs="+", default=OF_CASES, choices=COMMANDS)
-    parser.add_argument("--json", type=Path)
     parser.add_argument("--page", action="store_true")
     parser.add_argument("--usual", action="store_true")
     parser.add_argument("--builds", type=Path)
@@ -175,8 +171,7 @@ def main() -> None:
     print(verdict(rows))
     if options.usual:
         keep_usual(took)
-    if options.json:
-        options.json.write_text(json.dumps([asdict(row) for row in rows], indent=1), encoding="utf-8")
+    write_json(options.json, [asdict(row) for row in rows])
     if options.page:
         publish(ROOT / "docs" / "benchmarks.md", "progress", runs_table(rows))
 

@@ -10,12 +10,8 @@ about. `new` makes its case beside the recordings: after it there is none, or on
 of the case with the button "Calibrate" of a tab pressed.
 """
 
-from __future__ import annotations
-
-import argparse
 import asyncio
 import datetime
-import json
 import os
 import platform
 import random
@@ -29,7 +25,6 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager, redirect_stderr, redirect_stdout, suppress
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
 
 ROOT = Path(__file__).resolve().parents[2]
 sys.path[:0] = [str(ROOT), str(ROOT / "tests" / "shared")]
@@ -40,6 +35,7 @@ from small_case import small_case  # noqa: E402
 from extras.workbench.machines import Bench  # noqa: E402
 from extras.workbench.steps import comparing_job  # noqa: E402
 from extras.workbench.tabs import Tabs  # noqa: E402
+from scripts.published import benchmark_parser, write_json  # noqa: E402
 from thermoscope.case_folder.folder import load_case  # noqa: E402
 from thermoscope.cli import main as command_line  # noqa: E402
 from thermoscope.commands.open_case import fingerprint  # noqa: E402
@@ -272,10 +268,9 @@ def measured(hits: int, seed: int) -> list[Trial]:
 
 def main() -> None:
     """Print the table; exit code 1 if any trial left a fault."""
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser = benchmark_parser(__doc__)
     parser.add_argument("--hits", type=int, default=20)
     parser.add_argument("--seed", type=int, default=0)
-    parser.add_argument("--json", type=Path)
     options = parser.parse_args()
     print(f"{platform.machine()}, Python {platform.python_version()}, {datetime.date.today()}", flush=True)
     done = measured(options.hits, options.seed)
@@ -283,9 +278,7 @@ def main() -> None:
     print(f"{len(done)} trials, {len(hits)} hit, {len(wrong)} left a fault")
     for t in wrong:
         print(t)
-    if options.json:
-        rows: list[Any] = [vars(t) for t in done]
-        options.json.write_text(json.dumps({"trials": rows}, indent=1))
+    write_json(options.json, {"trials": [vars(t) for t in done]})
     raise SystemExit(1 if wrong else 0)
 
 

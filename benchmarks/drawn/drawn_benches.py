@@ -10,16 +10,11 @@ another test or place. A probe that sat elsewhere is nothing that a model should
 *adequate* whose sentence names the sensor or one of its tests.
 """
 
-from __future__ import annotations
-
-import argparse
-import json
 import sys
 import time
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from itertools import product
-from pathlib import Path
 
 import numpy as np
 
@@ -28,6 +23,7 @@ from lumped.declarations.network import read_network
 from lumped.integration.simulate import Record, simulate
 from lumped.model.network import Network
 from measured.case import Case, Channel, Model, Test
+from scripts.published import benchmark_parser, write_json
 from validation.diagnosis import diagnose
 from validation.effects import effect
 from validation.effects.during import During
@@ -254,10 +250,9 @@ KINDS = {
 
 
 def main() -> None:
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = benchmark_parser(__doc__)
     parser.add_argument("--cases", type=int, default=100, help="drawn of each kind")
     parser.add_argument("--only", nargs="*", choices=KINDS, default=list(KINDS))
-    parser.add_argument("--json", type=Path, help="where every outcome goes")
     options = parser.parse_args()
     outcomes: dict[str, list[str]] = {}
     for seed, kind in product(range(options.cases), options.only):
@@ -268,8 +263,7 @@ def main() -> None:
             word = str(fault)
         outcomes.setdefault(kind, []).append(word)
         print(f"{kind} {seed}: {word} ({time.process_time() - begin:.0f} s)", file=sys.stderr, flush=True)
-        if options.json:
-            options.json.write_text(json.dumps(outcomes, indent=1), encoding="utf-8")
+        write_json(options.json, outcomes)
     print("| kind | drawn | right |\n|---|---|---|")
     for kind, words in outcomes.items():
         print(f"| {kind} | {len(words)} | {sum(w == 'right' for w in words)} |")

@@ -5,8 +5,6 @@
 Drawn plants of `simulated.bench` in simulated time. Every run is a line of OUT; started again, it goes on from there.
 """
 
-from __future__ import annotations
-
 import argparse
 import tempfile
 import time

@@ -7,15 +7,10 @@ wanders, a load 1 % off, a start off ambient, an error of reading of one sigma t
 correlated over 1 to 20 minutes, a logger of 0.1 K. The user's network is off by 20 % in every value and never fitted.
 """
 
-from __future__ import annotations
-
-import argparse
-import json
 from collections import Counter
 from collections.abc import Sequence
 from dataclasses import replace
 from itertools import product
-from pathlib import Path
 
 import numpy as np
 
@@ -24,7 +19,7 @@ from lumped.declarations.network import read_network
 from lumped.integration.simulate import Record, simulate
 from lumped.model.network import Network
 from measured.case import Case, Channel, Model, Test
-from scripts.published import table
+from scripts.published import benchmark_parser, table, write_json
 
 SIGMA_K, STEP_S = 0.3, 60.0
 DRIFTS = {  # what the later test has: factors of film, contact and loss
@@ -94,12 +89,11 @@ def pair(seed: int, kind: str, times: Sequence[float] = (4.0, 8.0)) -> Drift:
 
 
 def main() -> None:
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = benchmark_parser(__doc__)
     parser.add_argument("--pairs", type=int, default=200, help="drawn of each kind")
     parser.add_argument(
         "--times", type=float, nargs=2, default=(4.0, 8.0), help="length in time constants, from and to"
     )
-    parser.add_argument("--json", type=Path, help="where every outcome goes")
     options = parser.parse_args()
     found: dict[str, list[dict]] = {kind: [] for kind in DRIFTS}
     for seed, kind in product(range(options.pairs), DRIFTS):
@@ -113,8 +107,7 @@ def main() -> None:
         signs = (sum(w in one["sentence"] for one in every) for w in ("cools less", "cools as before"))
         rows.append([kind, len(every), *counts, named, *signs])
     print(table(columns.split(" | "), rows))
-    if options.json:
-        options.json.write_text(json.dumps(found, indent=1), encoding="utf-8")
+    write_json(options.json, found)
 
 
 if __name__ == "__main__":

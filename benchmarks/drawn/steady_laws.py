@@ -8,18 +8,14 @@ flooded; a film that is another in every test; one that is the same in all. Flow
 sensors read within 0.1 K. The highest flow and the highest speed are left out of what the law is found from.
 """
 
-from __future__ import annotations
-
-import argparse
-import json
 from itertools import product
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from extras.bench.steady_law.law import SteadyLaw, find_law
 from extras.bench.steady_law.steady_tests import Columns, SteadyTests, steady_tests
+from scripts.published import benchmark_parser, write_json
 
 KINDS = ("powers", "flooding", "scatter", "constant")
 Plan = tuple[tuple[float, ...], tuple[float, ...], tuple[float, ...]]  # flows (l/min), speeds (rpm), inlets (degC)
@@ -92,10 +88,9 @@ def outcome(law: SteadyLaw, kind: str, limit: float) -> dict[str, Any]:
 
 
 def main() -> None:
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = benchmark_parser(__doc__)
     parser.add_argument("--tables", type=int, default=100, help="drawn of each kind")
     parser.add_argument("--few", action="store_true", help="12 tests at one inlet, not 50 at two")
-    parser.add_argument("--json", type=Path, help="where every outcome goes")
     options = parser.parse_args()
     columns = "drawn | tables | right | beyond: rms (K) | largest (K) | in the 95 % band"
     print(f"| {columns} |\n|{'---|' * (columns.count('|') + 1)}")
@@ -106,8 +101,7 @@ def main() -> None:
         inside = 100.0 * np.mean([r["inside"] for r in rows])
         right = sum(r["right"] for r in rows)
         print(f"| {kind} | {len(rows)} | {right} | {np.median(rms):.2f} | {max(rms):.2f} | {inside:.0f} % |")
-    if options.json:
-        options.json.write_text(json.dumps(every, indent=1), encoding="utf-8")
+    write_json(options.json, every)
 
 
 if __name__ == "__main__":

@@ -7,8 +7,6 @@ Tables of library machines, of circuits with each coolant and of every surface o
 correlation says of itself there. Points beside an end, to 3 % and 1 K, are left out.
 """
 
-from __future__ import annotations
-
 import argparse
 import sys
 import warnings

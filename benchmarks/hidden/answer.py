@@ -1,7 +1,5 @@
 """One case, diagnosed. What comes back is what a user would see, and the time it took; the label is not looked at."""
 
-from __future__ import annotations
-
 import time
 from typing import Any
 

@@ -1,7 +1,5 @@
 """The list of cases: which machine, which class, what is hidden in it and how large. Truth stays in the label."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import asdict, dataclass, replace
 
@@ -198,9 +196,9 @@ def hidden_in(kind: Archetype, label: Label) -> Change:
         return _passing(kind, label)
     if label.group == "tense":
         # Three drawn parameters two deviations from what the user believes.
-        rng = np.random.default_rng([label.seed, 8])
-        keys = rng.choice(list(kind.tense), min(3, len(kind.tense)), replace=False)
-        return Change({str(k): float(np.exp(2.0 * kind.tense[str(k)] * rng.choice([-1, 1]))) for k in keys})
+        rng, sd = np.random.default_rng([label.seed, 8]), kind.spreads() | kind.doubted
+        keys = rng.choice(kind.tense, min(3, len(kind.tense)), replace=False)
+        return Change({str(k): float(np.exp(2.0 * sd[str(k)] * rng.choice([-1, 1]))) for k in keys})
     source = {"fault": kind.faults, "foreign": kind.foreign, "absorbed": kind.absorbed}.get(label.group)
     return source[label.truth[0]](label.seed) if source else NOTHING
 

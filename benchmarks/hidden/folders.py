@@ -8,8 +8,6 @@ Only "kind" and "effects" must be there; a condition may say in which test it he
 Its words are translated by WORDS; another generator brings a table of its own (`--words FILE`, TOML, the same form).
 """
 
-from __future__ import annotations
-
 import json
 import time
 import tomllib

@@ -1,7 +1,5 @@
 """An answer held against its label: which promises it keeps. True, False, or None where one does not apply."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from typing import Any
 

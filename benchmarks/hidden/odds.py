@@ -5,8 +5,6 @@ twins (`cases.twins`); a fault is right when its channel, input or test is; unkn
 catalogue has, and since the tool has conditions that held for a while also the one at that place.
 """
 
-from __future__ import annotations
-
 import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass

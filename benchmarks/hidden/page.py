@@ -1,7 +1,5 @@
 """The score as docs/hidden-effects.md shows it: promises, then the first guess of every method."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 
 from scripts.published import table

@@ -8,8 +8,6 @@
 Deviance drops of BIC and LRT are those of the linearised refit (Wald's form of the likelihood ratio); AIC's are refits.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass, replace
 
 import numpy as np

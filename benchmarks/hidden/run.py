@@ -3,8 +3,6 @@
 In as many processes as wanted; what is done is not done again.
 """
 
-from __future__ import annotations
-
 import time
 from collections.abc import Sequence
 from dataclasses import dataclass, replace

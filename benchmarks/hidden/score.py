@@ -1,7 +1,5 @@
 """The table of promises over many cases."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterable, Sequence
 from typing import Any
 

@@ -4,8 +4,6 @@ From an observer who knows the machine (truth/oracle.py), so that neither depend
 machines of their own by `hidden_effects.py --sizes` and kept in sizes.json: a case stays the same case.
 """
 
-from __future__ import annotations
-
 import json
 from collections.abc import Mapping, Sequence
 from functools import cache

@@ -1,7 +1,5 @@
 """What a user would hand in: the coarse network of the file in his words, and the logged tests as a case."""
 
-from __future__ import annotations
-
 import tomllib
 from collections.abc import Mapping, Sequence
 from functools import cache

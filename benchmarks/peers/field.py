@@ -7,8 +7,6 @@ Every iterative solver runs to a relative residual of 1e-10. Each contender solv
 is loaded or compiled at first use counts for nobody. Prints one line of JSON.
 """
 
-from __future__ import annotations
-
 import json
 import sys
 import time

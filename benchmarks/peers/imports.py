@@ -7,9 +7,6 @@ assumes. "volume off" is the largest difference of a part's mesh to its exact vo
 numbers; "balance" is heat in less heat out, over heat in. With --page the table goes into docs/benchmarks.md.
 """
 
-from __future__ import annotations
-
-import argparse
 import os
 import resource
 import tempfile
@@ -23,7 +20,7 @@ import numpy as np
 import thermoscope as ts
 from fem.matrices.kernels import volumes
 from geom import import_draft
-from scripts.published import ROOT, publish, table, timed, write_rows
+from scripts.published import ROOT, benchmark_parser, publish, table, timed, write_rows
 
 PAGE = ROOT / "docs" / "benchmarks.md"
 HEAD = "file | import (s) | build (s) | field (s) | states | volume off | balance | memory (GB)"
@@ -57,9 +54,8 @@ def page(rows: list[dict[str, Any]]) -> str:
 
 
 def main() -> None:
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = benchmark_parser(__doc__)
     parser.add_argument("files", nargs="+", type=Path, metavar="FILE")
-    parser.add_argument("--json", metavar="FILE", help="write the rows there; - is stdout")
     parser.add_argument("--page", action="store_true")
     given = parser.parse_args()
     rows = []

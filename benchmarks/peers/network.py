@@ -6,8 +6,6 @@ which is what a user asks for. What is compiled is compiled before the clock sta
 and of diffrax, CVODES through CasADi. CasADi and diffrax are optional: pip install casadi diffrax.
 """
 
-from __future__ import annotations
-
 import shutil
 import sys
 from collections.abc import Callable
@@ -46,7 +44,7 @@ class Equations:
     tables: np.ndarray
 
     @classmethod
-    def of(cls, net: Network, rec: Record) -> Equations:
+    def of(cls, net: Network, rec: Record) -> "Equations":
         n = len(net.states)
         K, films = np.zeros((n, n + 1)), {"r": np.zeros(n), "c": np.zeros(n)}
         for link in net.links:

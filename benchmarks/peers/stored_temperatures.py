@@ -6,16 +6,12 @@ The file stores a steady state and not the losses that made it. What `thermoscop
 shown as a table. With --page it goes into docs/how-to/import.md.
 """
 
-from __future__ import annotations
-
-import argparse
-import json
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
 from geom import import_draft
-from scripts.published import ROOT, publish, table
+from scripts.published import ROOT, benchmark_parser, publish, table, write_json
 from thermoscope.commands.model.stored_losses import loss_words, nearest_losses, steady_rises
 
 PAGE = ROOT / "docs" / "how-to" / "import.md"
@@ -30,16 +26,14 @@ def page(result: Mapping[str, Any]) -> str:
 
 
 def main() -> None:
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = benchmark_parser(__doc__)
     parser.add_argument("file", type=Path)
-    parser.add_argument("--json", type=Path)
     parser.add_argument("--page", action="store_true")
     given = parser.parse_args()
     draft = import_draft(given.file)
     result = nearest_losses(steady_rises(draft, draft.surroundings | {"ambient": draft.readings["Ambient"]}))
     print(page(result))
-    if given.json:
-        given.json.write_text(json.dumps({"file": given.file.name, **result}, indent=1))
+    write_json(given.json, {"file": given.file.name, **result})
     if given.page:
         publish(PAGE, "stored", page(result))
 

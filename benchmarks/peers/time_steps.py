@@ -8,10 +8,6 @@ copper losses that follow temperature. Radau goes from sample to sample at rtol 
 Tangents of some of a network's parameters are held against central differences on the steps of the run.
 """
 
-from __future__ import annotations
-
-import argparse
-import json
 import sys
 from pathlib import Path
 
@@ -23,6 +19,8 @@ from lumped.model.network import Network, Row
 
 sys.path.insert(0, str(Path(__file__).parents[2] / "tests" / "shared"))
 from random_networks import Machine, admissible, built, machine, reference
+
+from scripts.published import benchmark_parser, write_json
 
 WRONG_K, WRONG_SHARE, OUTSIDE_K = 0.1, 1e-3, 0.01
 STEP, WRONG_TANGENT = 1e-4, 1e-5  # of log(parameter);  of the largest tangent: rounding leaves 1e-7 to 1e-6
@@ -75,11 +73,10 @@ def tangent_error(network: Network, record: Record, rows: list[Row], count: int)
 
 
 def main() -> None:
-    parser = argparse.ArgumentParser(description=__doc__)
+    parser = benchmark_parser(__doc__)
     parser.add_argument("--first", type=int, default=0)
     parser.add_argument("--count", type=int, default=1000)
     parser.add_argument("--tangents", type=int, default=3, help="parameters of each network")
-    parser.add_argument("--json", type=Path, metavar="FILE", help="one row per network")
     parser.add_argument(
         "--references", type=Path, metavar="FOLDER", help="keep Radau's answers there for the next time"
     )
@@ -105,8 +102,7 @@ def main() -> None:
     print(
         f"tangents from finite differences, over the largest: median {np.median(apart):.1e}, largest {apart.max():.1e}"
     )
-    if given.json:
-        given.json.write_text(json.dumps(rows, indent=1))
+    write_json(given.json, rows)
 
 
 if __name__ == "__main__":

@@ -1,7 +1,5 @@
 """The pictures of docs/how-to/watch.md and fleet.md: python docs/images/monitoring.py (some minutes)."""
 
-from __future__ import annotations
-
 import gzip
 import json
 import subprocess

@@ -5,8 +5,6 @@ undo; reload. Prints how long each step took. Serves a copy of the case, so that
 Needs playwright and Chromium.
 """
 
-from __future__ import annotations
-
 import shutil
 import subprocess
 import sys

@@ -1,7 +1,5 @@
 """What the site takes from the folders: a gallery of examples/, a machine to turn, every page under "Explained"."""
 
-from __future__ import annotations
-
 import ast
 import re
 from pathlib import Path

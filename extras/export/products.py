@@ -3,8 +3,6 @@
 g(u) = sum_k c_k prod_j phi_kj(u_i)
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass, replace
 
 
@@ -66,7 +64,7 @@ class Product:
     coefficient: float
     functions: tuple[Function, ...] = ()
 
-    def times(self, *more: Function) -> Product:
+    def times(self, *more: Function) -> "Product":
         return replace(self, functions=(*self.functions, *more))
 
 

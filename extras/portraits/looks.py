@@ -3,8 +3,6 @@
 Every corner shows a mix of the two nodes of its meshed part that lie nearest.
 """
 
-from __future__ import annotations
-
 import hashlib
 import json
 from dataclasses import replace

@@ -1,7 +1,5 @@
 """The machine as one would photograph it: rounded, lit, standing on its shadow; for the eye only, never the mesh."""
 
-from __future__ import annotations
-
 from collections import defaultdict
 from collections.abc import Sequence
 from pathlib import Path
@@ -37,7 +35,7 @@ def portrait(
     title: str = "",
     caption: str = CAPTION,
     png: str | Path | None = None,
-) -> pyvista.Plotter:
+) -> "pyvista.Plotter":
     """A machine as it looks, cut open or (wedge None) whole; of its materials, or coloured by temperature.
 
     nodes, T : a mesh and temperatures (degC) per node; limits : of the colour scale (degC)
@@ -54,13 +52,13 @@ def portrait(
 
 def staged(
     machine: th.MachineDescription,
-    warm: Warm | None,
+    warm: "Warm | None",
     wedge: th.Wedge | None,
     view: th.View,
     theme: th.Theme,
     size: tuple[int, int],
     room: th.Room,
-) -> tuple[pyvista.Plotter, list[Painted]]:
+) -> "tuple[pyvista.Plotter, list[Painted]]":
     """The machine lit and standing, with room around it; and what of it is coloured by temperature."""
     p, bodies = _stage(theme, size), dressed(machine)
     painted = [_add(p, pieces, *kind, warm) for kind, pieces in _gathered(bodies, wedge).items()]
@@ -116,7 +114,7 @@ def _gathered(bodies: Sequence[Body], wedge: th.Wedge | None) -> dict[tuple[Fini
     return out
 
 
-def _add(p: pyvista.Plotter, pieces: Pieces, finish: Finish, section: bool, warm: Warm | None) -> Painted | None:
+def _add(p: "pyvista.Plotter", pieces: Pieces, finish: Finish, section: bool, warm: Warm | None) -> Painted | None:
     """One thing to draw; with the rows that give its temperatures, where it shows any."""
     shine, sharpness = finish.shine
     look: dict[str, Any] = {"ambient": 0.40, "diffuse": 0.75, "smooth_shading": False}
@@ -139,7 +137,7 @@ def _add(p: pyvista.Plotter, pieces: Pieces, finish: Finish, section: bool, warm
     return None if rows is None else (data, rows)
 
 
-def _stage(theme: th.Theme, size: tuple[int, int]) -> pyvista.Plotter:
+def _stage(theme: th.Theme, size: tuple[int, int]) -> "pyvista.Plotter":
     """A lamp over the shoulder, a weak one from the other side, a weak one from behind."""
     import pyvista
 
@@ -151,7 +149,7 @@ def _stage(theme: th.Theme, size: tuple[int, int]) -> pyvista.Plotter:
     return p
 
 
-def _shade(p: pyvista.Plotter, points: th.Array) -> None:
+def _shade(p: "pyvista.Plotter", points: th.Array) -> None:
     """Corners that little light reaches are darker (screen-space ambient occlusion)."""
     size = float(np.linalg.norm(np.ptp(points, axis=0)))
     p.renderer.enable_ssao(radius=0.045 * size, bias=0.0015 * size, kernel_size=64, blur=True)

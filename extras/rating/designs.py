@@ -1,7 +1,5 @@
 """A Pareto set to move about in: every design as a line over parallel coordinates, and in space."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
@@ -30,7 +28,7 @@ def column(rows: Sequence[Row], name: str) -> list[float]:
 
 def parallel_coordinates(
     rows: Sequence[Row], objectives: Sequence[str], variables: Mapping[str, str], *, theme: th.Theme = th.LIGHT
-) -> go.Figure:
+) -> "go.Figure":
     """Designs as lines over objectives and variables, coloured by the first objective; ranges can be brushed."""
     import plotly.graph_objects as go
 
@@ -43,7 +41,7 @@ def parallel_coordinates(
     return out
 
 
-def objective_space(rows: Sequence[Row], objectives: Sequence[str], *, theme: th.Theme = th.LIGHT) -> go.Figure:
+def objective_space(rows: Sequence[Row], objectives: Sequence[str], *, theme: th.Theme = th.LIGHT) -> "go.Figure":
     """Designs in the space of three objectives, the first, second and last; the fourth is the colour."""
     import plotly.graph_objects as go
 

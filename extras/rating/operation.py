@@ -1,7 +1,5 @@
 """How a machine is operated while it is rated: which inputs carry the load, which the speed, what lies around it."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
@@ -36,7 +34,7 @@ class Operation:
 
     def moved(
         self, inputs: Mapping[str, float] | None = None, boundaries: Mapping[str, float] | None = None
-    ) -> Operation:
+    ) -> "Operation":
         """With some inputs and boundaries at other values."""
         return replace(
             self, inputs={**self.inputs, **(inputs or {})}, boundaries={**self.boundaries, **(boundaries or {})}

@@ -3,8 +3,6 @@
 Places whose largest temperature is limited are the hot spot of a part that was meshed, else a node; or its mean.
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
@@ -110,7 +108,7 @@ class Model:
         except ThermoscopeError:
             return time, np.full((time.size, len(self.rows)), RUNAWAY_C)
 
-    def repeated(self, op: Operation, load: float, speed: float | None, duty: Duty) -> th.Array:
+    def repeated(self, op: Operation, load: float, speed: float | None, duty: "Duty") -> th.Array:
         """(n_rows,) largest temperatures of a duty that is repeated until it repeats itself."""
         time, share = th.s3(duty.period_s, duty.share, TOGETHER, duty.period_s / SAMPLES)
         pause = op.at(duty.idle * load, 0.0 if duty.stops else speed)

@@ -1,7 +1,5 @@
 """Recordings dropped on the page: what each column is taken for, columns dragged to other parts, a case of them."""
 
-from __future__ import annotations
-
 import re
 import tempfile
 from collections.abc import Mapping, Sequence
@@ -30,7 +28,7 @@ class Dropped:
     target: th.Target
     constants: Mapping[str, float] = field(default_factory=dict)
 
-    def moved(self, key: str, to: str) -> Dropped:
+    def moved(self, key: str, to: str) -> "Dropped":
         """With a column (its key in `rows`) at another place or input, "" to leave it out.
 
         Raises InputError where it cannot go there.
@@ -48,7 +46,7 @@ class Dropped:
                 records[j] = replace(r, guesses=th.assigned(r.guesses, r.source, "", to, self.target))
         return replace(self, records=tuple(records))
 
-    def constant(self, name: str, text: str) -> Dropped:
+    def constant(self, name: str, text: str) -> "Dropped":
         """With the value of something that was not recorded, "" for none again."""
         value = th.number(text)
         if text.strip() and value != value:

@@ -1,7 +1,5 @@
 """The long calculations, as a process of their own runs them: arguments in, results out, progress by `tell`."""
 
-from __future__ import annotations
-
 import os
 from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
@@ -78,7 +76,7 @@ def stepped(
     return revision, {**result.document(), "found": words}, look
 
 
-def recordings(files: Sequence[Path], network: Network, tell: th.Progress) -> Dropped:
+def recordings(files: Sequence[Path], network: "Network", tell: th.Progress) -> "Dropped":
     """What the columns of dropped files are taken for."""
     from extras.workbench.dropped import read
 
@@ -96,7 +94,7 @@ def machine(file: Path, folder: Path, tell: th.Progress) -> dict[str, Any]:
 
 
 def new_case(
-    dropped: Dropped, settings: th.Settings, network: Network, tell: th.Progress
+    dropped: "Dropped", settings: th.Settings, network: "Network", tell: th.Progress
 ) -> tuple[th.Folder, Appearance]:
     """A new case of dropped files, opened, and its first comparison."""
     from extras.workbench.dropped import write

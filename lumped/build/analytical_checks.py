@@ -7,7 +7,6 @@ of that is its difference of means over the heat that passes: equal to the legs 
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 
@@ -16,6 +15,7 @@ from geom import Machine
 from geom.description.part import Prism
 from geom.description.profile import Loop
 from geom.meshing.areas import PartRow, part_table
+from geom.table import TableRow
 from lumped.build.crosscheck import CrossCheck
 from lumped.correlations.windings import mellor
 from lumped.machine.path import stem
@@ -27,8 +27,10 @@ LEAST = 0.01  # of all heat: below it a difference over a heat means nothing
 
 
 @dataclass(frozen=True)
-class AnalyticalCheck:
+class AnalyticalCheck(TableRow):
     """Resistances (K/W) of one link: by the textbook, from the field, and their ratio textbook over field."""
+
+    properties = ("ratio",)
 
     link: str
     formula: str
@@ -38,9 +40,6 @@ class AnalyticalCheck:
     @property
     def ratio(self) -> float:
         return self.textbook_K_W / self.field_K_W
-
-    def document(self) -> dict[str, Any]:
-        return {**vars(self), "ratio": self.ratio}
 
 
 def analytical_checks(machine: Machine, field: FieldModel, check: CrossCheck) -> list[AnalyticalCheck]:

@@ -8,19 +8,9 @@ from itertools import pairwise
 from geom.constants import ALPHA_CU, RPM
 from lumped.model.quantities import USUAL
 from lumped.schemas.reader import Table, powers
+from lumped.sources import loss_laws as laws
 from lumped.sources.inverter import InverterLoss, PulseLoss
 from lumped.sources.layer_loss import by_dowell, from_map
-from lumped.sources.loss_laws import (
-    EDDY,
-    BrushLoss,
-    CopperLoss,
-    EddyLoss,
-    IronLoss,
-    MeasuredLoss,
-    PowerLoss,
-    RippleLoss,
-)
-from lumped.sources.loss_map import MapLoss
 from lumped.transfer.laws import CONSTANT, Law, Linear, TemperatureLaw
 
 COLDEST, HOTTEST = -60.0, 300.0  # degC: from the coldest place a machine stands in to beyond what insulation bears
@@ -46,10 +36,10 @@ def _copper(table: Table) -> Law:
         raise table.error("resistance is not given once", "R20_ohm, or R_ohm with reference_degC")
     reference = 20.0 if keys[0] == "R20_ohm" else table.number("reference_degC")
     number, alpha = table.number, _coefficient(table, reference, ALPHA_CU)
-    return CopperLoss(number(keys[0]), table.members("currents"), number("factor", 1.0), alpha, reference)
+    return laws.CopperLoss(number(keys[0]), table.members("currents"), number("factor", 1.0), alpha, reference)
 
 
-def _eddy(table: Table, copper: CopperLoss) -> Law:
+def _eddy(table: Table, copper: laws.CopperLoss) -> Law:
     """From a polynomial, from a map over speed, or of bars in a slot by Dowell."""
     speed = table.word("input")
     if "factors" in table:
@@ -62,7 +52,7 @@ def _eddy(table: Table, copper: CopperLoss) -> Law:
         bar = table.number("bar_height_mm") * 1e-3, table.number("porosity"), int(table.number("layer"))
         out = by_dowell(copper, speed, table.number("pole_pairs"), *bar)
     else:
-        out = EddyLoss(copper, table.numbers("coefficients"), speed, table.number("at", 1.0))
+        out = laws.EddyLoss(copper, table.numbers("coefficients"), speed, table.number("at", 1.0))
     table.close()
     return out
 
@@ -78,24 +68,24 @@ def _iron(table: Table) -> Law:
     n, excitation = table.number, table.word("excitation", "") or None
     speed, excited = (table.word("speed", "speed_rpm"), n("speed_at")), (excitation, n("excitation_at", 1.0))
     watts, exponents = (n("hysteresis_W", 0.0), n("eddy_W", 0.0)), (n("flux_exponent", 2.0), _temperature(table))
-    return IronLoss(*watts, *speed, *excited, *exponents, n("excess_W", 0.0), n("frequency_exponent", 1.0))
+    return laws.IronLoss(*watts, *speed, *excited, *exponents, n("excess_W", 0.0), n("frequency_exponent", 1.0))
 
 
 def _terms(table: Table) -> Law:
     if "P_W" in table:
-        return PowerLoss(((table.number("P_W"), powers(table)),), _temperature(table))
+        return laws.PowerLoss(((table.number("P_W"), powers(table)),), _temperature(table))
     terms = tuple((item.number("P_W"), powers(item)) for item in table.listed("terms"))
     if not terms:
         right = "P_W = ... with of = { input, at, exponent }, or terms = [{ P_W = ..., of = ... }]"
         raise table.error("no power", right)
-    return PowerLoss(terms, _temperature(table))
+    return laws.PowerLoss(terms, _temperature(table))
 
 
 def _brush(table: Table) -> Law:
     friction = table.number("friction_W", 0.0)
     speed = table.word("speed", "speed_rpm") if friction else None
     at = table.number("speed_at") if friction else 1.0
-    return BrushLoss(table.number("drop_V"), table.word("current", "current_A"), friction, speed, at)
+    return laws.BrushLoss(table.number("drop_V"), table.word("current", "current_A"), friction, speed, at)
 
 
 def _measured(table: Table, speeds: Collection[str]) -> Law:
@@ -114,7 +104,7 @@ def _measured(table: Table, speeds: Collection[str]) -> Law:
             raise item.error("none of these inputs is known as a speed", right)
         out.append((-item.number("factor", RPM if turning else 1.0, of="mechanical.factor"), names))
         item.close()
-    return MeasuredLoss((*electrical, *out))
+    return laws.MeasuredLoss((*electrical, *out))
 
 
 def deducted(table: Table, kinds: Mapping[str, str]) -> tuple[str, ...]:
@@ -130,7 +120,7 @@ def deducted(table: Table, kinds: Mapping[str, str]) -> tuple[str, ...]:
 def _ripple(table: Table) -> Law:
     n, alpha = table.number, _coefficient(table, 20.0, ALPHA_CU)
     supply, voltage = n("supply_V"), table.word("voltage", "voltage_V")
-    return RippleLoss(supply, voltage, n("L_H"), n("switching_Hz"), n("R20_ohm"), n("factor", 1.0), alpha)
+    return laws.RippleLoss(supply, voltage, n("L_H"), n("switching_Hz"), n("R20_ohm"), n("factor", 1.0), alpha)
 
 
 def _inverter(table: Table) -> Law:
@@ -155,7 +145,7 @@ def _map(table: Table) -> Law:
     if len(watts) != len(speed):
         raise table.error(f"P_W has {len(watts)} rows", f"one per speed: {len(speed)}")
     inputs = table.word("speed", "speed_rpm"), table.word("torque", "torque_Nm")
-    return MapLoss(speed, torque, watts, *inputs, _temperature(table), powers(table))
+    return laws.MapLoss(speed, torque, watts, *inputs, _temperature(table), powers(table))
 
 
 LOSSES = {"copper": _copper, "iron": _iron, "brush": _brush, "ripple": _ripple, "inverter": _inverter}
@@ -177,6 +167,6 @@ def loss_laws(tables: Mapping[str, Table], quantities: Mapping[str, str] | None 
     for name, kind in loss_kinds(tables).items():
         table = tables[name]
         law = out[name] = read.get(kind, _terms)(table)
-        if isinstance(law, CopperLoss) and "ac" in table:
-            out[f"{name}{EDDY}"] = _eddy(Table(table.raw("ac"), f"{table.where} ac"), law)
+        if isinstance(law, laws.CopperLoss) and "ac" in table:
+            out[f"{name}{laws.EDDY}"] = _eddy(Table(table.raw("ac"), f"{table.where} ac"), law)
     return out

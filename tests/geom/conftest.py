@@ -1,7 +1,5 @@
 """The motor and its coarse mesh, built once."""
 
-from __future__ import annotations
-
 import pytest
 
 from geom import COARSE, build_mesh, load_machine

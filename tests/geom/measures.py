@@ -1,7 +1,5 @@
 """Measures of a named mesh."""
 
-from __future__ import annotations
-
 import numpy as np
 
 

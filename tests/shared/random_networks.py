@@ -3,8 +3,6 @@
 A network is a set of plain arrays (Machine); `built` declares it to the tool, `reference` integrates it by Radau.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

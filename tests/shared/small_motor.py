@@ -1,7 +1,5 @@
 """A small motor of nested rings on a polar grid, for the pictures' tests: no CAD, no mesher."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from geom.description.machine import Machine

@@ -1,7 +1,5 @@
 """A drive cycle, cycles/NAME.toml: what the machine is to do, by columns, by a standard duty, or by a vehicle."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from functools import partial
@@ -47,7 +45,7 @@ class Cycle:
     record: Record
     drive: Drive | None = None
     watched: Mapping[str, str] = field(default_factory=dict)
-    series: Series | None = None
+    series: "Series | None" = None
     laws: Mapping[str, Law] = field(default_factory=dict)
     notes: tuple[str, ...] = ()
 

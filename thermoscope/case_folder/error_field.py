@@ -3,8 +3,6 @@
 The error is interpolated by the model's own covariance at the end of a test.
 """
 
-from __future__ import annotations
-
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -25,7 +23,7 @@ if TYPE_CHECKING:
     from viz.viewer.part_shapes import NetworkRun
 
 
-def error_gain(folder: Folder, test: Test, nodes: SplitMesh) -> tuple[tuple[Channel, ...], Interpolated]:
+def error_gain(folder: Folder, test: Test, nodes: "SplitMesh") -> tuple[tuple[Channel, ...], Interpolated]:
     """Sensors that read at the end of a test, and what each kelvin that one of them is off by tells elsewhere.
 
     Its mean is (n_nodes, n_channels) K/K. Doubts: every parameter within its interval, where it has one, else its
@@ -50,7 +48,7 @@ def last_fifth(test: Test) -> slice:
     return slice(int(0.8 * len(test.time)), None)
 
 
-def network_run(case: Case, test: Test, times: Array) -> NetworkRun:
+def network_run(case: Case, test: Test, times: Array) -> "NetworkRun":
     """At the times (s) of a test: node -> degC; heat between nodes, the mean over the step that ends there."""
     from viz.figures.flows import heat_flows, last_running_step
     from viz.viewer.part_shapes import NetworkRun

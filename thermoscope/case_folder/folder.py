@@ -25,9 +25,9 @@ from thermoscope.case_folder.history import History, checked_values, load_histor
 from thermoscope.case_folder.quantities import with_quantities
 from thermoscope.case_folder.recording_checks import Finding, Patient
 from thermoscope.case_folder.settings import Entry, Settings, read_settings
-from validation.counting import counted
 from validation.effects import effect
 from validation.parameters.unknowns import case_reference, matching, scene_of, standing, working
+from validation.threads import counted
 
 if TYPE_CHECKING:
     from geom import Machine

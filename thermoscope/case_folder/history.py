@@ -1,7 +1,5 @@
 """model.toml: the model as it stands, revision by revision. Revisions are only ever added; the last one counts."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field, replace
 from pathlib import Path
@@ -79,15 +77,15 @@ class History:
         reference = revision.reference or self.reference
         return Model(network, effects, dict(revision.values), revision.number, reference, revision.intervals)
 
-    def and_then(self, revision: Revision) -> History:
+    def and_then(self, revision: Revision) -> "History":
         """One revision more; what the user answered stays."""
         answers = {**self.last.answers, **revision.answers}
         return self._longer(replace(revision, answers=answers))
 
-    def _longer(self, revision: Revision) -> History:
+    def _longer(self, revision: Revision) -> "History":
         return History((*self.revisions, replace(revision, number=self.last.number + 1)))
 
-    def back_to(self, number: int) -> History:
+    def back_to(self, number: int) -> "History":
         """One more revision, equal to an earlier one."""
         by_number = {0: Revision(0, "step back"), **{r.number: r for r in self.revisions}}
         if number not in by_number:

@@ -8,6 +8,7 @@ import numpy as np
 
 from geom.arrays import Array, Mask
 from geom.constants import ZERO_C
+from geom.table import TableRow
 from geom.text import counted
 from measured.recordings.readings import START_S
 from measured.recordings.sheet import Sheet
@@ -24,7 +25,7 @@ LEAST_READINGS = 3  # of a sensor in a test, as of rows
 
 
 @dataclass(frozen=True)
-class Finding:
+class Finding(TableRow):
     """test : "" for the case as a whole;  where : column, input or node;  cure : what to do about it
 
     remark : may well be as meant
@@ -35,9 +36,6 @@ class Finding:
     what: str
     cure: str
     remark: bool = False
-
-    def document(self) -> dict[str, str | bool]:
-        return dict(vars(self))
 
 
 @dataclass(frozen=True)

@@ -1,7 +1,5 @@
 """The model as it stands, run for pictures: readings per sensor, temperature fields, and the steps that led there."""
 
-from __future__ import annotations
-
 import json
 from collections import deque
 from collections.abc import Iterable, Mapping, Sequence
@@ -83,7 +81,7 @@ def ends(case: Case, test: Test, names: Sequence[str]) -> list[float]:
     return simulate(network, record(test, {}), values, [rows[n] for n in names]).y[-1].tolist()
 
 
-def comparison_of(folder: Folder, test: Test, limits: Mapping[str, float] | None = None) -> Comparison:
+def comparison_of(folder: Folder, test: Test, limits: Mapping[str, float] | None = None) -> "Comparison":
     """A test against the model, and against the model before its last step.
 
     limits : channel -> the largest error that counts as agreement (K); None to have them worked out
@@ -94,7 +92,7 @@ def comparison_of(folder: Folder, test: Test, limits: Mapping[str, float] | None
     return replace(current_comparison(folder, test), limits=agreement, before=before)
 
 
-def current_comparison(folder: Folder, test: Test) -> Comparison:
+def current_comparison(folder: Folder, test: Test) -> "Comparison":
     """A test against the model as it is, without what counts as agreement."""
     from viz.data import Comparison
 
@@ -123,7 +121,7 @@ def accepted(case: Case, test: Test) -> tuple[tuple[float, float], ...]:
     return tuple(span for event in events for span in event.spans.get(test.name, ()))
 
 
-def nodes_of(folder: Folder, test: Test) -> SplitMesh:
+def nodes_of(folder: Folder, test: Test) -> "SplitMesh":
     """The mesh to draw in a test: of several bases what the machine stands on."""
     from viz.rendering.nodes import split
 
@@ -131,7 +129,7 @@ def nodes_of(folder: Folder, test: Test) -> SplitMesh:
     return split(folder.built.mesh, unused(folder.built.machine, test.inputs))
 
 
-def fields(case: Case, test: Test, nodes: SplitMesh, frames: int) -> tuple[Array, Array]:
+def fields(case: Case, test: Test, nodes: "SplitMesh", frames: int) -> tuple[Array, Array]:
     """Times (n,) s and temperatures (n, n_nodes) degC on the parts' own nodes; the network needs a recovery."""
     network, run = _run(case, test)
     rows = np.unique(np.linspace(run.time.size - 1, 0, frames).astype(int))
@@ -144,7 +142,7 @@ def instant_words(test: Test, time: float) -> str:
     return f"{test.name} at {time / 60:.0f} min"
 
 
-def temperature_range(folder: Folder, nodes: SplitMesh) -> tuple[float, float]:
+def temperature_range(folder: Folder, nodes: "SplitMesh") -> tuple[float, float]:
     """Coldest and hottest temperature (degC) of all tests, with the model now and before its last step.
 
     Pictures, films, recordings, viewer and workbench of a case take their colours from it, so that they compare.

@@ -1,7 +1,5 @@
 """Results as people take them away: a workbook (.xlsx) with input, results and errors, or the same tables as .csv."""
 
-from __future__ import annotations
-
 import io
 from collections.abc import Iterable, Mapping
 from pathlib import Path
@@ -23,7 +21,7 @@ if TYPE_CHECKING:
 UNREADABLE = str.maketrans("[]:*?/\\'", "________")  # what Excel forbids in the name of a worksheet, or at its ends
 
 
-def tables(folder: Folder) -> list[Table]:
+def tables(folder: "Folder") -> list[Table]:
     """A worksheet each: parameters, errors, and for each test its inputs and its results side by side."""
     from thermoscope.case_folder.runs import readings
 
@@ -45,7 +43,7 @@ def tables(folder: Folder) -> list[Table]:
     return out
 
 
-def _over_time(title: str, test: Test, columns: Mapping[str, Any]) -> Table:
+def _over_time(title: str, test: "Test", columns: Mapping[str, Any]) -> Table:
     """Columns of a test beside its time (s)."""
     wide = {name: np.broadcast_to(v, test.time.shape) for name, v in columns.items()}
     names, *rows = rows_of({"time_s": test.time, **wide})

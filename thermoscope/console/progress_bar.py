@@ -5,8 +5,6 @@ in `usual_stages.json`. Either is scaled by how fast this run has been so far. T
 with the time left, so that it never stands.
 """
 
-from __future__ import annotations
-
 import json
 import re
 import sys
@@ -47,7 +45,7 @@ PATIENCE_S = 10.0  # shorter work may say nothing of its time
 WORTH_S = 2.0  # shorter work has no share and no time left
 USUAL = "usual_stages.json"  # beside this file: what two cores took
 _blocks = count()  # of this process: `demo` has many
-_whole: ContextVar[ProgressBar | None] = ContextVar("whole", default=None)
+_whole: "ContextVar[ProgressBar | None]" = ContextVar("whole", default=None)
 
 
 @dataclass
@@ -304,7 +302,7 @@ def _case() -> str:
 def _display(stages: ProgressBar) -> Iterator[Progress]:
     from rich.console import Console
 
-    from validation.counting import listening
+    from validation.threads import listening
 
     console = Console(stderr=True)
 
@@ -351,7 +349,7 @@ def timed_lines(
 
 
 @contextmanager
-def _bar(stages: ProgressBar, console: Console) -> Iterator[Progress]:
+def _bar(stages: ProgressBar, console: "Console") -> Iterator[Progress]:
     """A bar that moves with the clock; a message that is too long for the line is cut, its times never."""
     from rich.progress import BarColumn, Progress as Bar, ProgressColumn, TextColumn, TimeElapsedColumn
     from rich.table import Column
@@ -360,7 +358,7 @@ def _bar(stages: ProgressBar, console: Console) -> Iterator[Progress]:
     class Left(ProgressColumn):
         """Share done and time left, now."""
 
-        def render(self, task: Task) -> Text:
+        def render(self, task: "Task") -> Text:
             remaining = stages.left()
             if remaining:
                 bar.update(task.id, total=1.0, completed=remaining[0])

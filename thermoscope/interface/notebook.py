@@ -26,7 +26,7 @@ def hearing(progress: Progress, command: str, subject: str) -> Iterator[Progress
     from IPython.display import HTML, display
 
     from thermoscope.console.progress_bar import remembering, timed_lines
-    from validation.counting import listening
+    from validation.threads import listening
 
     line = display(HTML(""), display_id=True)
 

@@ -11,7 +11,7 @@ from lumped.model.network import Network, Row
 from measured.case import Test
 from measured.sensors.operators import head
 from validation.bands.posterior import ParameterPosterior
-from validation.comparison.moved_inputs import moved_boundaries, moved_inputs
+from validation.comparison.uncertainty import moved_boundaries, moved_inputs
 
 
 @dataclass(frozen=True)

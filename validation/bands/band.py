@@ -14,8 +14,8 @@ from measured.case import Channel, Test
 from measured.sensors.operators import head
 from validation.bands.posterior import ParameterPosterior, acting
 from validation.comparison.linearisation import stretch
-from validation.comparison.moved_inputs import moved_boundaries, moved_inputs
 from validation.comparison.predict import Watch
+from validation.comparison.uncertainty import moved_boundaries, moved_inputs
 from validation.threads import side_by_side
 
 NONE = np.empty(0)

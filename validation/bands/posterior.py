@@ -29,7 +29,7 @@ from measured.sensors.operators import of_measurement, starts
 from validation.calibration.calibrate import CachedSegments, Fit, minimise, with_model_error
 from validation.calibration.model_error import with_cores, with_doubts
 from validation.comparison.linearisation import Segment, segments
-from validation.comparison.moved_inputs import FLOWS, moved_inputs
+from validation.comparison.uncertainty import FLOWS, moved_inputs
 from validation.parameters.unknowns import nuisances, working
 
 Progress = Callable[[str], None]

@@ -1,14 +1,12 @@
 """Heat that bases carry off: conduction through their feet, then convection and radiation from their faces."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 
 from geom.description.roles import Role
+from geom.table import TableRow
 from lumped.integration.balance import Balance, balance
 from lumped.integration.simulate import simulate
 from lumped.machine.bases import Switched
@@ -22,11 +20,13 @@ BODY = "stator.core"
 
 
 @dataclass(frozen=True)
-class BaseHeat:
+class BaseHeat(TableRow):
     """W at a test's end.  conduction : from the machine into feet and bases;  convection, radiation : from their faces
 
     body : from the machine's own outer faces;  rise_K : of the laminations over ambient
     """
+
+    properties = ("path_W_K", "body_W_K")
 
     conduction: float
     convection: float
@@ -42,10 +42,7 @@ class BaseHeat:
     def body_W_K(self) -> float:
         return self.body / self.rise_K
 
-    def document(self) -> dict[str, Any]:
-        return {**vars(self), "path_W_K": self.path_W_K, "body_W_K": self.body_W_K}
-
-    def against(self, other: BaseHeat) -> str:
+    def against(self, other: "BaseHeat") -> str:
         """How it differs, by mechanism."""
         return ", ".join(
             f"{name} {getattr(self, name):.0f} instead of {getattr(other, name):.0f} W"

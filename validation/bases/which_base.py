@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 
 from geom.errors import InputError
+from geom.table import select_fields
 from lumped.machine.bases import Switched
 from lumped.model.network import Network
 from measured.case import Case, Test
@@ -42,14 +43,8 @@ class BaseDeviance:
         return self.deviance > DECISIVE
 
     def document(self) -> dict[str, Any]:
-        return {
-            "test": self.test,
-            "base": self.base,
-            "declared": self.declared,
-            "deviance": self.deviance,
-            "excluded": self.excluded,
-            "heat_W": self.heat.document(),
-        }
+        row = select_fields(self, "test", "base", "declared", "deviance", "excluded")
+        return {**row, "heat_W": self.heat.document()}
 
 
 def switches(network: Network) -> dict[str, str]:

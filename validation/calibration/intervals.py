@@ -7,6 +7,7 @@ import numpy as np
 
 from geom.arrays import Array
 from geom.constants import NORMAL_95
+from geom.table import TableRow
 from measured.sensors.operators import of_measurement
 from validation.calibration.calibrate import Fit
 from validation.parameters.unknowns import to_value
@@ -28,7 +29,7 @@ class Profile:
 
 
 @dataclass(frozen=True)
-class Estimate:
+class Estimate(TableRow):
     """A fitted parameter. prior : (median, low, high) of its central 95 %; identified: the data narrowed the prior.
 
     partner : the parameter it trades with, where their correlation exceeds 0.7;  at_bound : it sticks to a bound
@@ -45,10 +46,6 @@ class Estimate:
     at_bound: bool = False
     profile: Profile | None = None
     of_measurement: bool = False
-
-    def document(self) -> dict:
-        profile = self.profile.document() if self.profile else None
-        return {**vars(self), "ci95": list(self.ci95), "prior": list(self.prior), "profile": profile}
 
 
 def estimates(fit: Fit, profiles: Mapping[str, Profile] | None = None) -> tuple[Estimate, ...]:

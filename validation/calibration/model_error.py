@@ -5,8 +5,6 @@ model reads y + D d with d ~ N(0, 1). Marginalised, D D' is the covariance of th
 sensors and tests included, without a draw: Bayesian approximation error (Kaipio and Somersalo 2005, chapter 5.8).
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from itertools import combinations, product
@@ -50,7 +48,7 @@ class SquareOf:
         return np.asarray(sum(np.asarray(inputs[n], float) ** 2 for n in self.inputs)) / self.largest
 
     @classmethod
-    def of(cls, network: Network, tests: Sequence[Test], quantities: Sequence[str]) -> SquareOf | None:
+    def of(cls, network: Network, tests: Sequence[Test], quantities: Sequence[str]) -> "SquareOf | None":
         """Of the first of some quantities that all tests have and that is not zero throughout."""
         every = [n for n in tests[0].inputs if all(n in t.inputs for t in tests)] if tests else []
         for quantity in quantities:
@@ -288,7 +286,7 @@ class ModelError:
         """Channel -> (n, steps): what steps of the inputs do in a test."""
         return {s.channel: self.of(s)[:, self.model_columns :] for s in parts}
 
-    def bounded(self, most: float) -> ModelError:
+    def bounded(self, most: float) -> "ModelError":
         """With the model's columns of each record scaled down together to `most` (K, one sigma) in sum."""
         scaled = {
             key: np.hstack(

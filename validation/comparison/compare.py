@@ -7,7 +7,7 @@ import numpy as np
 
 from geom.description.roles import Identity
 from geom.errors import ThermoscopeError
-from geom.table import Table, TableResult
+from geom.table import Table, TableResult, TableRow, select_fields
 from geom.text import table
 from lumped.integration.runaway import checked_run
 from lumped.model.network import Network
@@ -25,7 +25,7 @@ Budget = Mapping[str, float]
 
 
 @dataclass(frozen=True)
-class ChannelError:
+class ChannelError(TableRow):
     """Error of one sensor in one test, measured - model (K).
 
     percent_of_rise : rmse over the largest rise measured in the test;  u_input_K, u_numeric_K : standard uncertainties
@@ -34,6 +34,8 @@ class ChannelError:
     n, seconds : readings, and the time that they stand for: by it the errors of several sensors and tests are pooled
     verdict : "within" when rmse is no more than limit_K, "over" when it is, "unknown" without a limit
     """
+
+    properties = ("verdict",)
 
     channel: str
     place: str
@@ -54,9 +56,6 @@ class ChannelError:
         if self.limit_K is None:
             return "unknown"
         return "within" if self.rmse_K <= self.limit_K else "over"
-
-    def document(self) -> dict:
-        return {**vars(self), "verdict": self.verdict}
 
 
 @dataclass(frozen=True)
@@ -81,7 +80,7 @@ class TestError:
     @property
     def summary(self) -> dict:
         """Its error over all channels, for a document."""
-        return {"name": self.name, "role": self.role, "rmse_K": self.rmse_K, "fitted_rmse_K": self.fitted_rmse_K}
+        return select_fields(self, "name", "role", "rmse_K", "fitted_rmse_K")
 
     @property
     def over(self) -> int:
@@ -89,7 +88,7 @@ class TestError:
         return sum(c.verdict == "over" for c in self.channels)
 
     def document(self) -> dict:
-        return {**self.summary, "channels": [c.document() for c in self.channels]}
+        return {**self.summary, **select_fields(self, "channels")}
 
 
 @dataclass(frozen=True)
@@ -165,11 +164,7 @@ class Comparison(TableResult):
         return {
             "case": self.case,
             "model": {"revision": self.revision, "effects": list(self.effects)},
-            "tests": [t.document() for t in self.tests],
-            "rmse_K": self.rmse_K,
-            "fitted_rmse_K": self.fitted_rmse_K,
-            "floor_K": self.floor_K,
-            "words": self.words,
+            **select_fields(self, "tests", "rmse_K", "fitted_rmse_K", "floor_K", "words"),
             "roles": [
                 {"name": n, "role": i.role, "turns": i.turns, "known": origin[n], "evidence": i.why}
                 for n, i in self.identities.items()

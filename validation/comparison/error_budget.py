@@ -3,8 +3,6 @@
 Mesh and condensation are looked at once, at the machine's rated point, and kept; in a run they grow with its rise.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any, Protocol
 
@@ -33,11 +31,11 @@ class OpenCase(Protocol):
     """A case with its model.  positions : sensor -> (x, y, z) m where known;  built : where it comes from a machine"""
 
     @property
-    def case(self) -> Case: ...
+    def case(self) -> "Case": ...
     @property
     def positions(self) -> Mapping[str, Sequence[float]]: ...
     @property
-    def built(self) -> Built | None: ...
+    def built(self) -> "Built | None": ...
 
 
 def monitored_places(folder: OpenCase) -> MonitoredPlaces:
@@ -74,7 +72,7 @@ def model_of(folder: OpenCase) -> tuple[Network, dict[str, float]]:
 
 
 def _of_run(
-    network: Network, values: Mapping[str, float], run: Record, rows: Mapping[str, Row], rated: Rated | None
+    network: Network, values: Mapping[str, float], run: Record, rows: Mapping[str, Row], rated: "Rated | None"
 ) -> ErrorBudget:
     course = simulate(network, run, values, list(rows.values()))
     time_K = getattr(course, "time_error_K", None)

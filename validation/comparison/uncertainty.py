@@ -8,7 +8,7 @@ Source: ASME V&V 20-2009, chapters 3 and 6; JCGM 100 (expanded uncertainty).
 """
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import chain
 
 import numpy as np
@@ -17,13 +17,36 @@ from geom.arrays import Array
 from geom.errors import ThermoscopeError
 from lumped.integration.simulate import simulate
 from lumped.model.network import Network
+from lumped.model.quantities import AIR, LIQUID
 from measured.case import Test
-from measured.doubt import USUAL, Doubt
-from validation.comparison.moved_inputs import moved_boundaries, moved_inputs
+from measured.doubt import USUAL, Doubt, boundary_doubt
 from validation.comparison.predict import heat_model, predict, record
 
+FLOWS = {AIR: "flow of air", LIQUID: "flow of liquid", "flow_share": "flow by its share"}
 COVERAGE = 2.0  # standard uncertainties: 95 %
 RULE = f"within: rms up to {COVERAGE:g} times the uncertainty of reading, inputs and arithmetic"
+
+
+def moved_inputs(network: Network, test: Test, doubt: Doubt) -> Iterator[tuple[str, Test]]:
+    """The record with one input at a time off by its standard uncertainty; flows of one kind are off together.
+
+    What no law reads, and what is zero throughout, moves nothing and is left out.
+    """
+    read = network.inputs
+    groups: dict[str, list[str]] = {}
+    for name, u in test.inputs.items():
+        if name in read and np.any(u):
+            groups.setdefault(FLOWS.get(network.measures(name), f"input {name}"), []).append(name)
+    for group, names in groups.items():
+        share = doubt["flow" if group in FLOWS.values() else "input"]
+        yield group, test.scaled(dict.fromkeys(names, 1.0 + share))
+
+
+def moved_boundaries(test: Test, doubt: Doubt) -> Iterator[tuple[str, Test]]:
+    """The record with one boundary at a time off by what its thermometer may be."""
+    for name, T in test.boundaries.items():
+        off = np.asarray(T, float) + boundary_doubt(doubt, name)
+        yield f"boundary:{name}", replace(test, boundaries={**test.boundaries, name: off})
 
 
 @dataclass(frozen=True)

@@ -1,7 +1,5 @@
 """The few ways an effect changes a network: a link, a source, a copy of what is there."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, replace
 
@@ -24,7 +22,7 @@ class Shaped(Wrapped):
     by_instant: bool = False
 
     @classmethod
-    def of(cls, law: Law, shape: Callable[[Inputs], Array | float], *inputs: str) -> Shaped:
+    def of(cls, law: Law, shape: Callable[[Inputs], Array | float], *inputs: str) -> "Shaped":
         """A law times a shape that reads some more inputs, with the law's own dependence on temperature."""
         return cls(law, shape, law.temperature, inputs)
 

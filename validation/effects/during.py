@@ -1,7 +1,5 @@
 """An effect that holds in one test, or for a while: any other, times an input that says when."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable
 from dataclasses import dataclass, replace
 
@@ -49,7 +47,7 @@ class During(Effect):
         object.__setattr__(self, "mapping", mapping)
 
     @classmethod
-    def of(cls, base: Effect, condition: str) -> During:
+    def of(cls, base: Effect, condition: str) -> "During":
         return cls(f"{base.place}{IN}{condition}", base, condition)
 
     @property

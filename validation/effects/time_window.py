@@ -1,7 +1,5 @@
 """When something held: all of a test, stretches of some, or as an input of 0 to 1 says. Its name says all of it."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
@@ -33,7 +31,7 @@ class Event:
     spans: Mapping[str, tuple[Span, ...]]
 
     @classmethod
-    def of(cls, spans: Mapping[str, Iterable[Span]]) -> Event:
+    def of(cls, spans: Mapping[str, Iterable[Span]]) -> "Event":
         return cls({t: tuple(sorted((float(a), float(b)) for a, b in spans[t])) for t in sorted(spans)})
 
     @property
@@ -60,14 +58,14 @@ class Event:
         often = "twice" if len(self.every) == 2 else f"{len(self.every)} times"
         return f"{often} in {', '.join(self.tests)}, about {length:.2g} min each"
 
-    def overlap(self, other: Event) -> float:
+    def overlap(self, other: "Event") -> float:
         """Time in both over time in either."""
         pairs = (product(spans, other.spans.get(test, ())) for test, spans in self.spans.items())
         both = sum(max(0.0, min(b, d) - max(a, c)) for each in pairs for (a, b), (c, d) in each)
         every = sum(y - x for e in (self, other) for x, y in e.every)
         return both / max(every - both, 1e-12)
 
-    def repeats_at(self, other: Event) -> Event:
+    def repeats_at(self, other: "Event") -> "Event":
         """Those of its stretches that some of another event's meet."""
         both = {t: self.spans[t] for t in self.spans if t in other.spans}
         meets = {t: [(a, b) for a, b in s if any(a < d and c < b for c, d in other.spans[t])] for t, s in both.items()}
@@ -138,7 +136,7 @@ class TimeWindow:
         return self.factor * share(time, here[0]) if here else np.zeros_like(time)
 
 
-def lasts(condition: str, test: Test) -> bool:
+def lasts(condition: str, test: "Test") -> bool:
     """Is a condition this test, all but others, or an event from its first sample to its last?  An event's name rounds
     its times."""
     if odd := odd_tests(condition):
@@ -149,6 +147,6 @@ def lasts(condition: str, test: Test) -> bool:
     return condition == test.name or any(a <= first and b >= last for a, b in spans)
 
 
-def holds(name: str, test: Test) -> Array:
+def holds(name: str, test: "Test") -> Array:
     """The same as an input of a test."""
     return TimeWindow(name)(test.signals)

@@ -4,8 +4,6 @@ Tangents come from one run of every test; exchanged plugs and large amplitudes, 
 differences.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from itertools import permutations
@@ -29,7 +27,7 @@ if TYPE_CHECKING:
 class WithColumns(Protocol):
     """Anything that says what its amplitudes do to the readings."""
 
-    def columns(self, run: Linearised) -> Sequence[Array]:
+    def columns(self, run: "Linearised") -> Sequence[Array]:
         """(n_reading, n_amplitude) K per unit, for each segment of the run."""
         ...
 
@@ -63,7 +61,7 @@ def amplitudes(network: Network, effects: Sequence[Effect]) -> tuple[Parameter, 
 
 
 def effect_columns(
-    fit: Fit, tests: Sequence[Test], effects: Sequence[Effect], values: Mapping[str, float]
+    fit: "Fit", tests: Sequence[Test], effects: Sequence[Effect], values: Mapping[str, float]
 ) -> list[Segment]:
     """Segments of a fit with one more column (K per unit) for each of some effects.
 

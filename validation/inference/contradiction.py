@@ -11,13 +11,13 @@ from dataclasses import dataclass, replace
 import numpy as np
 from scipy.special import ndtri
 
+from geom.table import TableRow
 from lumped.model.network import Network, Parameter
 from measured.case import Test
 from measured.sensors.operators import head
 from validation.calibration.calibrate import Fit
 from validation.inference.score import fit_score
 from validation.parameters.unknowns import parameter_words, to_value
-from validation.tables import TableRow
 
 FALSE = 0.05  # share of consistent cases in which some parameter of some test seems to differ
 FAR = 5.0  # factor from which tangents tell no size
@@ -45,7 +45,7 @@ class Difference(TableRow):
 
 
 @dataclass(frozen=True)
-class Contradiction:
+class Contradiction(TableRow):
     """All that would have to differ beyond the limit (standard deviations), most certain first.
 
     test : the one that stands against the others, "" for none;  words : the whole in one sentence
@@ -55,9 +55,6 @@ class Contradiction:
     test: str
     limit: float
     differences: tuple[Difference, ...]
-
-    def document(self) -> dict:
-        return {**vars(self), "differences": [d.document() for d in self.differences]}
 
 
 def contradiction(fit: Fit, tests: Sequence[Test]) -> Contradiction:

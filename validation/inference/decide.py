@@ -4,8 +4,6 @@ What the numbers' own error could pass for is not named; nor is what hangs on wh
 hypothesis is weighed again on every second instant, and a verdict that changes then is withheld.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from types import MappingProxyType
@@ -77,9 +75,9 @@ class Decision:
     verdict: Verdict
     groups: tuple[Group, ...]
     sure: float
-    others: tuple[Decision, ...] = ()
+    others: "tuple[Decision, ...]" = ()
     checks: tuple[Check, ...] = ()
-    withheld: Decision | None = None
+    withheld: "Decision | None" = None
     lead: float = 1.0
 
 

@@ -9,8 +9,6 @@ averaged over a few s, since nobody knows the usual size well. What carries weig
 Source: Kass and Raftery 1995; Kaipio and Somersalo 2005 for the model error in V.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, replace
@@ -87,7 +85,7 @@ class LoudNoise:
     gap: float
 
     @classmethod
-    def create(cls, evidence: Evidence, loud: Evidence) -> LoudNoise:
+    def create(cls, evidence: "Evidence", loud: "Evidence") -> "LoudNoise":
         over = log_evidence(loud.fit) - log_evidence(evidence.fit)
         return cls(loud.fit.noise, over, loud.fit.objective - evidence.fit.objective)
 

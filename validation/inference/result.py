@@ -1,15 +1,13 @@
 """What a diagnosis says: the seven verdicts, and the rows of its tables."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Literal
 
 from geom.errors import InputError
-from geom.table import Table, TableResult, percent
+from geom.table import Table, TableResult, TableRow, percent, select_fields
 from geom.text import table
-from validation.tables import TableRow, candidates_table, diagnosis_tables
+from validation.tables import candidates_table, diagnosis_tables
 
 if TYPE_CHECKING:
     from validation.bases.which_base import BaseDeviance
@@ -20,6 +18,10 @@ Verdict = Literal["adequate", "named", "group", "several", "outside", "absorbed"
 Decided = Literal["named", "group", "no", "cannot-tell"]
 Pair = tuple[float, float]
 
+# Of the document of a diagnosis, in its order
+FIRST_FIELDS: tuple[str, ...] = ("verdict", "words", "preliminary", "named", "groups", "candidates", "cannot_see")
+FIRST_FIELDS += ("where", "next_tests", "next_sensors", "odds", "explanations", "p_nothing", "events", "remainder")
+FIRST_FIELDS += ("doubts", "question", "contradiction", "checks", "without", "only")
 MOST_ODDS, LEAST_PROBABILITY = 5, 0.005  # explanations of a diagnosis that is printed, and from which probability
 
 
@@ -63,11 +65,11 @@ class Candidate(TableResult):
 
     def document(self) -> dict:
         special = ("value", "unit", "ci95", "rmse_K", "holdout_rmse_K", "tests")
-        out = {k: v for k, v in vars(self).items() if k not in special}
+        out = select_fields(self, *(k for k in vars(self) if k not in special))
         out["amplitude"] = {"value": self.value, "unit": self.unit, "ci95": list(self.ci95)}
         out["rmse_K"], out["holdout_rmse_K"] = _pair(self.rmse_K), _pair(self.holdout_rmse_K)
         out["tests"] = [dict(zip(("test", "before", "after", "held_out"), t, strict=True)) for t in self.tests]
-        return {**out, "confused_with": list(self.confused_with)}
+        return out
 
 
 def _pair(pair: Pair | None) -> dict | None:
@@ -113,9 +115,7 @@ class Experiment:
 
     def document(self) -> dict:
         """JSON: what is to be done stands under its kind."""
-        of = {k: v for k, v in vars(self).items() if k not in ("kind", "name")}
-        currents = [c.document() for c in self.currents]
-        return {self.kind: self.name, **of, "separates": list(self.separates), "currents": currents}
+        return {self.kind: self.name, **select_fields(self, *(k for k in vars(self) if k not in ("kind", "name")))}
 
 
 @dataclass(frozen=True)
@@ -202,6 +202,7 @@ class Check(TableRow):
     words : what would have to differ
     """
 
+    properties = ("contradicts",)
     kind: str
     where: str
     number: float
@@ -213,9 +214,6 @@ class Check(TableRow):
     def contradicts(self) -> bool:
         """Whether the verdict cannot stand beside it."""
         return self.number > self.limit
-
-    def document(self) -> dict:
-        return {**super().document(), "contradicts": self.contradicts}
 
 
 @dataclass(frozen=True)
@@ -233,13 +231,14 @@ class RecordDoubt(TableRow):
 
 
 @dataclass(frozen=True)
-class Remainder:
+class Remainder(TableRow):
     """A record that stays off with what is named in the model.
 
     error_K : rms;  model_K : how much of it the doubts of the model take away;  doubt : the one that does most of it
     effect : a second effect that would bring it to brought_K, with its probability;  test : the test that shows it
     """
 
+    properties = ("words",)
     channel: str
     record: str
     error_K: float
@@ -270,9 +269,6 @@ class Remainder:
             f"To tell: {self.test}."
         )
 
-    def document(self) -> dict:
-        return {**vars(self), "words": self.words}
-
 
 @dataclass(frozen=True)
 class Diagnosis(TableResult):
@@ -299,7 +295,7 @@ class Diagnosis(TableResult):
     groups: tuple[tuple[str, ...], ...]
     candidates: tuple[Candidate, ...]
     cannot_see: tuple[DetectionLimit, ...]
-    where: tuple[MissingHeat, ...]
+    where: "tuple[MissingHeat, ...]"
     next_tests: tuple[Experiment, ...]
     rmse_K: float
     floor_K: float
@@ -307,14 +303,14 @@ class Diagnosis(TableResult):
     pulls: tuple[tuple[str, float, float], ...] = ()
     cosine: dict[str, dict[str, float]] = field(default_factory=dict)
     next_sensors: tuple[Experiment, ...] = ()
-    bases: tuple[BaseDeviance, ...] = ()
+    bases: "tuple[BaseDeviance, ...]" = ()
     odds: tuple[Odds, ...] = ()
     explanations: tuple[Explanation, ...] = ()
     p_nothing: float = 1.0
     events: tuple[PossibleEvent, ...] = ()
     remainder: tuple[Remainder, ...] = ()
     doubts: tuple[RecordDoubt, ...] = ()
-    contradiction: Contradiction | None = None
+    contradiction: "Contradiction | None" = None
     question: Question | None = None
     checks: tuple[Check, ...] = ()
     without: tuple[str, ...] = ()
@@ -341,32 +337,10 @@ class Diagnosis(TableResult):
 
     def document(self) -> dict:
         return {
-            "verdict": self.verdict,
-            "words": self.words,
-            "preliminary": self.preliminary,
-            "named": list(self.named),
-            "groups": [list(g) for g in self.groups],
-            "candidates": [c.document() for c in self.candidates],
-            "cannot_see": [h.document() for h in self.cannot_see],
-            "where": [w.document() for w in self.where],
-            "next_tests": [t.document() for t in self.next_tests],
-            "next_sensors": [t.document() for t in self.next_sensors],
-            "odds": [o.document() for o in self.odds],
-            "explanations": [x.document() for x in self.explanations],
-            "p_nothing": self.p_nothing,
-            "events": [e.document() for e in self.events],
-            "remainder": [r.document() for r in self.remainder],
-            "doubts": [d.document() for d in self.doubts],
-            "question": None if self.question is None else self.question.document(),
-            "contradiction": None if self.contradiction is None else self.contradiction.document(),
-            "checks": [c.document() for c in self.checks],
-            "without": list(self.without),
-            "only": list(self.only),
+            **select_fields(self, *FIRST_FIELDS),
             "stated_odds": [dict(zip(("effect", "factor", "reason"), o, strict=True)) for o in self.stated_odds],
-            "rmse_K": self.rmse_K,
-            "floor_K": self.floor_K,
-            "threshold": self.threshold,
+            **select_fields(self, "rmse_K", "floor_K", "threshold"),
             "pulls": [{"parameter": n, "value": v, "prior_deviations": p} for n, v, p in self.pulls],
             "confusion": self.cosine,
-            "bases": [h.document() for h in self.bases],
+            **select_fields(self, "bases"),
         }

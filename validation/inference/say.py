@@ -1,7 +1,5 @@
 """What is said: the tables and the sentence of a diagnosis, from its posterior and decision."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
@@ -202,7 +200,7 @@ class Standard:
     hold_out: tuple[Segment, ...]
 
     @classmethod
-    def create(cls, case: Case, posterior: Posterior, lead: Fit | None) -> Standard:
+    def create(cls, case: Case, posterior: Posterior, lead: Fit | None) -> "Standard":
         tests = tuple(t for t in case.tests if t.role == "hold-out")
         e, share = posterior.evidence, evidence_temper(posterior.hypotheses)
         return cls(deviances(e, lead) if lead else {}, share, tests, hold_out_residuals(tests, e.fit))

@@ -13,6 +13,7 @@ from types import MappingProxyType
 import numpy as np
 
 from geom.arrays import Array, Mask
+from geom.table import TableRow
 from measured.case import STILL_K, Test
 from measured.sensors.blocks import groups
 from validation.calibration.calibrate import ROUGH, CachedSegments, Fit, minimise
@@ -33,7 +34,7 @@ REFITS = 3  # steps of such a fit: it begins at an optimum that all tests but fe
 
 
 @dataclass(frozen=True)
-class Check:
+class Check(TableRow):
     """One check: what it found, the limit, and whether that is good enough.
 
     partial : of a part of the readings alone
@@ -45,9 +46,6 @@ class Check:
     limit: float
     words: str
     partial: bool = False
-
-    def document(self) -> dict:
-        return dict(vars(self))
 
 
 @dataclass(frozen=True)

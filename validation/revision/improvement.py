@@ -8,6 +8,7 @@ from textwrap import shorten
 import numpy as np
 
 from geom.errors import NoSolution
+from geom.table import TableRow, select_fields
 from geom.text import counted
 from measured.case import Case
 from validation.calibration.calibrate import Progress, no_progress
@@ -60,21 +61,18 @@ class Step:
         return pooled(rows) if error is None else error
 
     def document(self) -> dict:
-        tests = [t.summary for t in self.comparison.tests]
         return {
-            "step": self.step,
-            "effect": self.effect,
+            **select_fields(self, "step", "effect"),
             "revision": self.comparison.revision,
-            "tests": tests,
-            "rmse_K": self.comparison.rmse_K,
-            "fitted_rmse_K": self.comparison.fitted_rmse_K,
+            "tests": [t.summary for t in self.comparison.tests],
+            **select_fields(self.comparison, "rmse_K", "fitted_rmse_K"),
             "evidence": dict(self.evidence),
             "laws": dict(self.revision.laws) if self.revision else {},
         }
 
 
 @dataclass(frozen=True)
-class Refusal:
+class Refusal(TableRow):
     """What was tried and why it does not stand, in words."""
 
     effects: Sequence[str]
@@ -106,15 +104,11 @@ class Improvement:
 
     def document(self) -> dict:
         return {
-            "verdict": self.diagnosis.verdict,
-            "words": self.diagnosis.words,
-            "adequate": self.adequate,
-            "why": self.why,
-            "refused": [vars(r) for r in self.refused],
+            **select_fields(self.diagnosis, "verdict", "words"),
+            **select_fields(self, "adequate", "why", "refused"),
             "left_out_K": self.stairs[-1].left_out_K,
             "plain_left_out_K": self.plain_K if np.isfinite(self.plain_K) else None,
-            "stairs": [s.document() for s in self.stairs],
-            "diagnosis": self.diagnosis.document(),
+            **select_fields(self, "stairs", "diagnosis"),
         }
 
 

@@ -9,7 +9,7 @@ import numpy as np
 from geom.arrays import Array
 from geom.errors import InputError
 from geom.one_thread import one_blas_thread
-from geom.table import Table, TableResult
+from geom.table import Table, TableResult, select_fields
 from geom.text import table
 from lumped.model.multipliers import parameter_values
 from lumped.model.network import Parameter
@@ -134,18 +134,8 @@ class Revision(TableResult):
         return self.model.revision
 
     def document(self) -> dict:
-        return {
-            "action": self.action,
-            "effect": self.effect,
-            "revision": self.revision,
-            "accepted": self.accepted,
-            "why": self.why,
-            "converged": self.converged,
-            "tests": [t.document() for t in self.tests],
-            "parameters": [p.document() for p in self.parameters],
-            "checks": [c.document() for c in self.checks],
-            "laws": dict(self.laws),
-        }
+        head = select_fields(self, "action", "effect", "revision", "accepted", "why", "converged")
+        return {**head, **select_fields(self, "tests", "parameters", "checks", "laws")}
 
 
 def calibrate(

@@ -1,7 +1,5 @@
 """A linear black box: how much each sensor moves in a while, by ridge on all that was drive at its begin."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass
 
@@ -60,7 +58,7 @@ class BlackBoxLessons:
     Ab: Sequence[Array]
 
     @staticmethod
-    def of(folds: Folds, columns: Columns, window: float) -> BlackBoxLessons:
+    def of(folds: Folds, columns: Columns, window: float) -> "BlackBoxLessons":
         def taught(record: Record) -> tuple[Array, Array]:
             ends = window_ends(len(record.time), record.rows(window))
             A = np.column_stack([record.T[ends[:-1]][:, columns.steady], driven(record, ends)])

@@ -9,8 +9,6 @@ losses. One non-negative least squares per sensor, so there is one optimum and n
 Source: the integral form of sparse identification (Schaeffer and McCalla 2017), with a library of physics only.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from itertools import combinations
@@ -149,7 +147,7 @@ class NetworkLessons:
     normal: Sequence[Sequence[Array]]
 
     @staticmethod
-    def of(folds: Folds, columns: Columns, form: Form) -> NetworkLessons:
+    def of(folds: Folds, columns: Columns, form: Form) -> "NetworkLessons":
         def taught(fold: Sequence[Record]) -> list[Array]:
             each = zip(*(windows(record, columns, form) for record in fold), strict=True)
             return [sum((A.T @ A for A in tables), np.zeros(())) for tables in each]

@@ -1,7 +1,5 @@
 """Losses and conductances that a free network needs, and that neither what is declared nor the catalogue has."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Mapping, Sequence
 from math import comb, log
@@ -28,7 +26,7 @@ if TYPE_CHECKING:
 KINDS: tuple[tuple[str, type[InputTerm]], ...] = (("loss", InputLoss), ("link", InputConductance))
 
 
-def network_terms(case: Case, evidence: Evidence, kinds: Sequence[str] | None = None) -> dict[Effect, float]:
+def network_terms(case: Case, evidence: "Evidence", kinds: Sequence[str] | None = None) -> dict[Effect, float]:
     """Effects that add what the free network needs, each with its log prior.
 
     That of a kind is shared over all places and all that these might follow, as if nothing had been looked at.
@@ -88,7 +86,7 @@ def largest_inputs(tests: Sequence[Test]) -> dict[str, float]:
     return {n: size for n, size in sizes.items() if size > 0.0}
 
 
-def _is_there(evidence: Evidence, term: Term, sizes: Mapping[str, float]) -> bool:
+def _is_there(evidence: "Evidence", term: Term, sizes: Mapping[str, float]) -> bool:
     """Does what is declared there follow the inputs, or an effect of the catalogue just these?"""
     fitted, more = (term_elements(network, term) for network in (evidence.fit.network, evidence.network))
     inputs = inputs_of(term)

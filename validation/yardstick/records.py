@@ -1,7 +1,5 @@
 """Tests as plain tables on one list of sensors: what a model that knows no machine can learn from."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
@@ -58,7 +56,7 @@ class Record:
         """Rows of a window (s): at least one, and at most a third of all."""
         return int(np.clip(round(window / self.step), 1, max((len(self.time) - 1) // 3, 1)))
 
-    def stretch(self, begin: int, end: int) -> Record:
+    def stretch(self, begin: int, end: int) -> "Record":
         """The rows from begin to end as a record of their own."""
         rows = slice(begin, end)
         return Record(self.name, self.time[rows], self.T[rows], self.read[rows], self.boundary[rows], self.u[rows])

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from geom.table import TableRow
 from lumped.model.network import Link, Network, Source
 from measured.case import Case, Test
 from validation.effects import catalogue
@@ -15,7 +16,7 @@ from validation.yardstick.terms import Term
 
 
 @dataclass(frozen=True)
-class Suggestion:
+class Suggestion(TableRow):
     """Heat between two places, or put in at one, that follows inputs as nothing declared does.
 
     other : the link's other end, "" of a loss;  inputs : that it follows and what is declared does not
@@ -25,6 +26,8 @@ class Suggestion:
     effects : those of them to be added, more than one where two powers of an input are needed
     share : of all heat that the sensor exchanges
     """
+
+    properties = ("words",)
 
     place: str
     other: str
@@ -43,10 +46,6 @@ class Suggestion:
         what = f"{self.place} to {self.other}" if self.other else f"a loss at {self.place}"
         where = f"the largest {' and '.join(self.inputs)}" if self.inputs else ""
         return law_sentence(what, self.rest, self.most, self.unit, where, self.interval)
-
-    def document(self) -> dict:
-        """As an entry of `lacking`."""
-        return {**vars(self), "words": self.words}
 
 
 def suggested_effects(terms: Sequence[Term], case: Case) -> tuple[Suggestion, ...]:

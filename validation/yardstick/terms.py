@@ -6,6 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from geom.arrays import Array
+from geom.table import TableRow
 from measured.case import Case
 from validation.yardstick import free_network
 from validation.yardstick.records import Columns, Folds, Record
@@ -14,7 +15,7 @@ SHARE = 0.05  # of all that warms and cools a sensor: what carries less is not w
 
 
 @dataclass(frozen=True)
-class Term:
+class Term(TableRow):
     """A link or loss that the free network has in every fit, whichever test is left out.
 
     place : of the sensor it warms;  kind : "link" | "loss";  other : sensor or boundary at a link's other end
@@ -33,10 +34,6 @@ class Term:
     high: float
     unit: str
     share: float
-
-    def document(self) -> dict:
-        """As an entry of `terms`."""
-        return dict(vars(self))
 
 
 def needed_terms(

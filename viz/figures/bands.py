@@ -1,7 +1,5 @@
 """How sure a model is: temperatures and missing heat over time with 95 % bands, calibrated values with intervals."""
 
-from __future__ import annotations
-
 import textwrap
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -34,7 +32,7 @@ class Predicted:
 
 
 @paper.styled
-def predicted(time: Array, places: Sequence[Predicted], *, title: str = "", png: str | Path | None = None) -> Figure:
+def predicted(time: Array, places: Sequence[Predicted], *, title: str = "", png: str | Path | None = None) -> "Figure":
     """A panel per place, the least sure first: the model with its band, and what a sensor read.  time (nt,) s
 
     Where no sensor reads, model and band are orange.
@@ -61,7 +59,7 @@ def predicted(time: Array, places: Sequence[Predicted], *, title: str = "", png:
 @paper.styled
 def missing_heat(
     where: Sequence[Mapping[str, Any]], *, events: Sequence[Mapping[str, Any]] = (), png: str | Path | None = None
-) -> Figure:
+) -> "Figure":
     """Missing heat (W) over each test at the likeliest place, with its 2-sigma band.
 
     events : of the same document, shaded as far as they are probable
@@ -89,7 +87,7 @@ WIDEST = 2.5  # of what was expected: an interval that is wider runs off the pic
 
 
 @paper.styled
-def intervals(parameters: Sequence[Mapping[str, Any]], *, png: str | Path | None = None) -> Figure:
+def intervals(parameters: Sequence[Mapping[str, Any]], *, png: str | Path | None = None) -> "Figure":
     """Each value with its 95 % interval on the scale of what was expected (grey), in the order given.
 
     Blue is what the data fix; pale what they leave as it was; vermilion what left the expected.

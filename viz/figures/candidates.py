@@ -1,7 +1,5 @@
 """What might be missing: the odds, the evidence of the candidate effects, and which of them cannot be told apart."""
 
-from __future__ import annotations
-
 import textwrap
 from collections.abc import Mapping, Sequence
 from pathlib import Path
@@ -25,7 +23,7 @@ DECISION = {"named": VERMILION, "group": ORANGE, "cannot-tell": PURPLE, "no": LI
 
 
 @paper.styled
-def scores(candidates: Sequence[Mapping[str, Any]], *, most: int = 12, png: str | Path | None = None) -> Figure:
+def scores(candidates: Sequence[Mapping[str, Any]], *, most: int = 12, png: str | Path | None = None) -> "Figure":
     """The highest log evidence as bars with each candidate's threshold, coloured by decision."""
     best = sorted(candidates, key=lambda c: c["score"], reverse=True)[:most][::-1]
     names = [textwrap.fill(c.get("words") or c["effect"], LABEL) for c in best]
@@ -48,7 +46,7 @@ def posterior(
     title: str = "What the readings say",
     most: int = 8,
     png: str | Path | None = None,
-) -> Figure:
+) -> "Figure":
     """Each leading cause as a bar, most probable first; the pale part is with a partner, which is named.
 
     explanations : of a diagnosis;  most : bars
@@ -72,7 +70,7 @@ def posterior(
 
 
 @paper.styled
-def differences(contradiction: Mapping[str, Any], *, most: int = 10, png: str | Path | None = None) -> Figure:
+def differences(contradiction: Mapping[str, Any], *, most: int = 10, png: str | Path | None = None) -> "Figure":
     """What would have to differ between tests, in standard deviations; what cannot differ is red.
 
     contradiction : the contradiction of a diagnosis or comparison
@@ -93,7 +91,7 @@ def differences(contradiction: Mapping[str, Any], *, most: int = 10, png: str | 
 
 def _bars(
     names: Sequence[str], values: Sequence[float], colours: Sequence[str], height: float = 0.3
-) -> tuple[Figure, Axes]:
+) -> "tuple[Figure, Axes]":
     """Named bars, one below the other, the first at the bottom.  height : of each with its gap (inch)"""
     figure, (ax,) = paper.subplots(8.4, height * len(names) + 1.2)
     ax.barh(range(len(names)), values, height=0.62, color=colours)
@@ -110,7 +108,7 @@ def factor(d: Mapping[str, Any]) -> str:
 
 
 @paper.styled
-def confusion(names: Sequence[str], cosine: Array, *, png: str | Path | None = None) -> Figure:
+def confusion(names: Sequence[str], cosine: Array, *, png: str | Path | None = None) -> "Figure":
     """|cosine| between the signatures of candidate effects: 1 cannot be told apart with these sensors and tests.
 
     cosine : (n, n)

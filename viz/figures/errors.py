@@ -1,7 +1,5 @@
 """The error falling: before and after per test, and over the revisions of a model."""
 
-from __future__ import annotations
-
 import textwrap
 from collections.abc import Mapping, Sequence
 from pathlib import Path
@@ -29,7 +27,7 @@ def before_after(
     most_K: float = 0.0,
     title: str = "",
     png: str | Path | None = None,
-) -> Figure:
+) -> "Figure":
     """A bar per test: what is left of its error, and pale what fell; what rose is vermilion. Held-out tests in bold.
 
     tests : [{"name", "role", "rmse_K": {"before", "after"}}] as in an `add` document;  most_K : the largest error ever
@@ -62,7 +60,7 @@ def staircase(
     floor_K: float | None = None,
     plain_K: float | None = None,
     png: str | Path | None = None,
-) -> Figure:
+) -> "Figure":
     """Error of every test over the revisions: a step per revision, held-out tests drawn strong.
 
     floor_K, plain_K : what the sensors' own uncertainty explains, and what the best plain model leaves
@@ -91,7 +89,7 @@ def staircase(
     return paper.save(figure, png)
 
 
-def _level(ax: Axes, error_K: float, words: str, right: float = 0.0) -> None:
+def _level(ax: "Axes", error_K: float, words: str, right: float = 0.0) -> None:
     """A dotted line at an error, with what it is: above it, or below where the title would be.  right : points"""
     ax.axhline(error_K, color=LIGHT.ink, lw=0.9, ls=":")
     side, of = "top" if error_K > TITLED * ax.get_ylim()[1] else "bottom", "offset points"

@@ -1,7 +1,5 @@
 """Heat through every link of a network over one step of a run, and as ribbons whose width is power."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from pathlib import Path
 from textwrap import fill
@@ -112,7 +110,7 @@ GAP = 0.065  # of the total between ribbons: nearly the height of a name; less w
 
 
 @paper.styled
-def sankey_of_losses(heat: Heat, *, title: str = "", png: str | Path | None = None) -> Figure:
+def sankey_of_losses(heat: Heat, *, title: str = "", png: str | Path | None = None) -> "Figure":
     """Losses and what a machine that cools gives up on the left, exits and what is stored on the right (W)."""
     # Exits by size: parallel streams as one, small ones as 'elsewhere', then what warms the machine
     out: dict[str, float] = {}
@@ -147,7 +145,9 @@ def entries(heat: Heat) -> dict[str, float]:
     return losses | ({COOLS: -heat.stored} if -heat.stored >= least else {})
 
 
-def _side(ax: Axes, parts: dict[str, float], outer: float, inner: float, colours: dict[str, str], total: float) -> None:
+def _side(
+    ax: "Axes", parts: dict[str, float], outer: float, inner: float, colours: dict[str, str], total: float
+) -> None:
     """Ribbons from a column at `outer`, spread out so that names fit, to the trunk at `inner`."""
     gap = min(GAP, (HIGH + LOW - 1) / max(len(parts) - 1, 1)) * total
     room = sum(parts.values()) + gap * (len(parts) - 1)
@@ -163,7 +163,7 @@ def _side(ax: Axes, parts: dict[str, float], outer: float, inner: float, colours
         ax.text(outer + 0.02 * sign, height, words, ha=side, va="center", fontsize=9)
 
 
-def _ribbon(ax: Axes, a: tuple[float, float], b: tuple[float, float], width: float, colour: str) -> None:
+def _ribbon(ax: "Axes", a: tuple[float, float], b: tuple[float, float], width: float, colour: str) -> None:
     """A band whose upper edge runs from a to b."""
     from matplotlib.patches import PathPatch
     from matplotlib.path import Path as Line

@@ -1,7 +1,5 @@
 """The machine warming up, as a moving picture."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -87,7 +85,7 @@ def animate(
 class Pulses:
     """Dots on a plotter whose camera stands still; `show` moves them on."""
 
-    def __init__(self, p: pyvista.Plotter, surface: Surface, sensors: Sequence[Sensor]) -> None:
+    def __init__(self, p: "pyvista.Plotter", surface: Surface, sensors: Sequence[Sensor]) -> None:
         self._p, self._xyz = p, np.array([s.xyz for s in sensors]).reshape(-1, 3)
         self._hidden = covered(obstacle(surface), self._xyz, np.array(p.camera.position))
 

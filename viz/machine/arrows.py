@@ -1,7 +1,5 @@
 """Heat flux in the solid parts: arrows on the cut faces."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -37,7 +35,7 @@ def flux_arrows(
     view: View | None = None,
     theme: Theme = LIGHT,
     png: str | Path | None = None,
-) -> pyvista.Plotter:
+) -> "pyvista.Plotter":
     """The field cut open, with arrows along the heat flux in both cut faces; their length grows with its root.
 
     limits : of the colours (degC), those of T if not given
@@ -72,7 +70,7 @@ def on_faces(nodes: SplitMesh, flux: Array, wedge: Wedge) -> tuple[Array, Array]
     return np.concatenate(points), np.concatenate(arrows)
 
 
-def _arrows(p: pyvista.Plotter, at: Array, flux: Array, length: float, theme: Theme) -> None:
+def _arrows(p: "pyvista.Plotter", at: Array, flux: Array, length: float, theme: Theme) -> None:
     import pyvista
 
     size = np.linalg.norm(flux, axis=1)

@@ -1,7 +1,5 @@
 """What the model misses, painted on the machine: told by the sensors, hatched where it is a guess."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -38,7 +36,7 @@ def misses(
     view: View | None = None,
     theme: Theme = LIGHT,
     png: str | Path | None = None,
-) -> pyvista.Plotter:
+) -> "pyvista.Plotter":
     """Measured minus model (K): vermilion where the machine is hotter than the model, blue where it is colder.
 
     error : (n_nodes,) K;  explained : (n_nodes,) share of the variance that readings explain, see
@@ -59,7 +57,7 @@ def misses(
     return scene.save(p, png)
 
 
-def _hatch(p: pyvista.Plotter, surface: Surface, guess: Mask, theme: Theme) -> None:
+def _hatch(p: "pyvista.Plotter", surface: Surface, guess: Mask, theme: Theme) -> None:
     """Stripes, evenly spaced on the screen, over the triangles whose corners are all a guess."""
     import pyvista
 
@@ -79,7 +77,7 @@ def _hatch(p: pyvista.Plotter, surface: Surface, guess: Mask, theme: Theme) -> N
     p.add_actor(actor, reset_camera=False, pickable=False, name="hatched")
 
 
-def _stripes(theme: Theme) -> pyvista.Texture:
+def _stripes(theme: Theme) -> "pyvista.Texture":
     """One stripe of ink between two of nothing."""
     import pyvista
 
@@ -92,7 +90,7 @@ def _stripes(theme: Theme) -> pyvista.Texture:
     return texture
 
 
-def pixels(p: pyvista.Plotter, points: Array) -> Array:
+def pixels(p: "pyvista.Plotter", points: Array) -> Array:
     """(n, 2) where points (m) are on the screen; the camera must stand."""
     renderer: Any = p.renderer
     wide, high = renderer.GetSize()

@@ -1,7 +1,5 @@
 """Where heat is missing, on the machine: what the latent scan of a diagnosis would put into each part."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -52,7 +50,7 @@ def missing_in_machine(
     view: View | None = None,
     theme: Theme = LIGHT,
     png: str | Path | None = None,
-) -> pyvista.Plotter:
+) -> "pyvista.Plotter":
     """Parts coloured by the heat (W) that would have to enter them, below zero leave them; unlikely places are grey.
 
     Each place by itself, not together; its label says how much speaks for it (nats). The headline says when that is too

@@ -1,7 +1,5 @@
 """The thermal network drawn into the machine it stands for."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
@@ -44,7 +42,7 @@ def network_in_machine(
     limits: tuple[float, float] | None = None,
     theme: Theme = LIGHT,
     png: str | Path | None = None,
-) -> pyvista.Plotter:
+) -> "pyvista.Plotter":
     """The upper half of the section: nodes where their parts are, coloured by temperature; a line per flow, as wide as
     its conductance and coloured by its heat.
 
@@ -126,7 +124,7 @@ def spread_out(at: Mapping[str, Array], least: float) -> dict[str, Array]:
     return dict(zip(names, xyz, strict=True))
 
 
-def _lines(p: pyvista.Plotter, at: Mapping[str, Array], flow: Heat, colours: Colormap, pixel_m: float) -> float:
+def _lines(p: "pyvista.Plotter", at: Mapping[str, Array], flow: Heat, colours: "Colormap", pixel_m: float) -> float:
     """A line per flow; the largest carry their watts where there is room. The widest line's W/K."""
     import pyvista
 
@@ -169,7 +167,7 @@ def clear_place(a: Array, b: Array, nodes: Sequence[Array], labels: Sequence[Arr
 
 
 def _nodes(
-    p: pyvista.Plotter, at: Mapping[str, Array], T: Mapping[str, float], limits: tuple[float, float] | None
+    p: "pyvista.Plotter", at: Mapping[str, Array], T: Mapping[str, float], limits: tuple[float, float] | None
 ) -> None:
     import pyvista
 

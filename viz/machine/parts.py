@@ -1,7 +1,5 @@
 """What the machine is made of: its parts in their own colours, whole, cut open, or pulled apart."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -36,7 +34,7 @@ def regions(
     theme: Theme = LIGHT,
     title: str = "",
     png: str | Path | None = None,
-) -> pyvista.Plotter:
+) -> "pyvista.Plotter":
     """The parts, each in its colour and with its name.
 
     mesh : draw the edges of the mesh too; where it is cut, those of the cut tetrahedra
@@ -64,7 +62,7 @@ def exploded(
     title: str = "",
     limits: tuple[float, float] | None = None,
     png: str | Path | None = None,
-) -> pyvista.Plotter:
+) -> "pyvista.Plotter":
     """The machine pulled apart along its axis, each group under its names; coloured by temperature (degC) if given.
 
     limits : of the colours (degC), those of T if not given
@@ -92,7 +90,7 @@ def exploded(
     return scene.save(p, png)
 
 
-def _title(p: pyvista.Plotter, points: Array, group: Sequence[str]) -> None:
+def _title(p: "pyvista.Plotter", points: Array, group: Sequence[str]) -> None:
     """The names of a group above its middle."""
     low, high = points.min(axis=0), points.max(axis=0)
     at = np.array([(low[0] + high[0]) / 2, high[1] + 0.1 * (high[1] - low[1]), (low[2] + high[2]) / 2])
@@ -133,7 +131,7 @@ def shifts(nodes: SplitMesh, groups: Sequence[Sequence[str]]) -> Array:
 
 
 def _paint(
-    p: pyvista.Plotter,
+    p: "pyvista.Plotter",
     surface: Surface,
     T: Array | None,
     theme: Theme,

@@ -1,7 +1,5 @@
 """Thermocouples on the machine: which get a label, and what must become transparent for the label to be true."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
@@ -38,7 +36,7 @@ class Marked:
     hidden: Mask
     cut: Ghosted
 
-    def draw(self, p: pyvista.Plotter, surface: Surface, view: View, theme: Theme, note: str = "") -> None:
+    def draw(self, p: "pyvista.Plotter", surface: Surface, view: View, theme: Theme, note: str = "") -> None:
         """Dots, some with labels; those inside or behind something are hollow, and the picture says so after `note`."""
         sensors = (*self.labelled, *self.others)
         labels = [_label(s, bool(h)) for s, h in zip(sensors, self.hidden, strict=True)]

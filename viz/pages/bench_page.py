@@ -1,7 +1,5 @@
 """One page to pin on the bench: what to drive tomorrow, and what each hypothesis predicts for it."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from html import escape
 from pathlib import Path
@@ -120,7 +118,7 @@ SENSORS = 4  # panels that a page holds side by side
 
 
 @paper.styled
-def predicted(plan: PredictedCurves, *, sensors: int = SENSORS, png: str | Path | None = None) -> Figure:
+def predicted(plan: PredictedCurves, *, sensors: int = SENSORS, png: str | Path | None = None) -> "Figure":
     """One panel per sensor, those first that tell most: a line per hypothesis with the sensor's own 2-sigma band."""
     channels = sorted(plan.test.channels, key=lambda c: -plan.spread_K(c.name))[:sensors]
     time = np.asarray(plan.test.time, float)

@@ -3,8 +3,6 @@
 Everything that comes from outside is escaped.
 """
 
-from __future__ import annotations
-
 import base64
 import re
 import shutil
@@ -47,7 +45,7 @@ def text(*paragraphs: str) -> str:
     return "".join(f"<p>{escape(p)}</p>" for p in paragraphs if p)
 
 
-def plot(figure: Figure, name: str, caption: str) -> str:
+def plot(figure: "Figure", name: str, caption: str) -> str:
     """A figure as inline SVG; its ids start with `name`, which must differ from plot to plot."""
     label = escape(caption, quote=True)
     return f'<figure role="img" aria-label="{label}">{paper.svg(figure, name)}{_caption(caption)}</figure>\n'

@@ -1,7 +1,5 @@
 """Markers on the machine, each with a label beside the machine at the end of a leader line."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
@@ -33,7 +31,7 @@ class Label:
 
 
 def callouts(
-    p: pyvista.Plotter,
+    p: "pyvista.Plotter",
     labels: Sequence[Label],
     points: Array,
     view: View,
@@ -69,13 +67,13 @@ def callouts(
                 dot(p, q)
 
 
-def pixel(p: pyvista.Plotter) -> float:
+def pixel(p: "pyvista.Plotter") -> float:
     """What a pixel is high where the camera looks (m)."""
     far = np.linalg.norm(np.subtract(p.camera.position, p.camera.focal_point))
     return float(2 * far * np.tan(np.deg2rad(p.camera.view_angle) / 2) / p.window_size[1])
 
 
-def dot(p: pyvista.Plotter, label: Label, size: float = 1.0) -> None:
+def dot(p: "pyvista.Plotter", label: Label, size: float = 1.0) -> None:
     """A marker without a label, `size` times as large as one with a label."""
     import pyvista
 

@@ -3,8 +3,6 @@
 So the geometry is cut once, and each new temperature field costs one sparse product.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass, replace
 from functools import cached_property
 
@@ -72,11 +70,11 @@ class Surface:
         """(n_points,) or (n_points, n) values from (n_nodes,) or (n_nodes, n) nodal ones."""
         return self.weights @ T
 
-    def only(self, mask: Mask) -> Surface:
+    def only(self, mask: Mask) -> "Surface":
         """Some of the triangles, (n,)."""
         return Surface(self.nodes, self.weights, self.triangles[mask], self.part[mask])
 
-    def clipped(self, direction: Array, offset: float = 0.0) -> Surface:
+    def clipped(self, direction: Array, offset: float = 0.0) -> "Surface":
         """The side of a plane on which `direction @ point >= offset` (m); through the axis without an offset."""
         d = _snapped(self.points @ direction - offset)
         above = (d >= 0)[self.triangles]
@@ -95,7 +93,7 @@ class Surface:
         weights = vstack([self.weights, combined.matrix() @ self.weights], format="csr")
         return Surface(self.nodes, weights, triangles, part).compact()
 
-    def compact(self) -> Surface:
+    def compact(self) -> "Surface":
         """Without unused points and empty triangles; points of one part that coincide are joined."""
         nodes, flat = np.unique(self.triangles, return_inverse=True)
         owner = np.zeros(len(nodes), np.int64)

@@ -10,8 +10,6 @@ the refit. What is held against these is `log_bayes`, the log evidence over that
 Source: Skilling 2006; Speagle 2020 (dynesty).
 """
 
-from __future__ import annotations
-
 import time
 from collections.abc import Callable, Sequence
 from dataclasses import asdict, dataclass
@@ -72,7 +70,7 @@ class Integral:
     sign: np.ndarray
 
     @classmethod
-    def of(cls, e: Evidence, h: Weighed) -> Integral:
+    def of(cls, e: Evidence, h: Weighed) -> "Integral":
         free = e.hypothesis(fitted_members(e, h.members))
         return cls(e, h.fit if h.members and h.fit else e.fit, h.members, np.array(free.scale), np.array(free.sign))
 

@@ -5,8 +5,6 @@ down to a share of the machine's largest rise. The bound is the least share that
 every kind in turn is held against the bound that the others ask for.
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any

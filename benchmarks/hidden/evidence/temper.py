@@ -5,8 +5,6 @@ over nothing). Answers keep evidence and probability of every hypothesis, so tha
 asked again.
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from itertools import product
 from math import exp

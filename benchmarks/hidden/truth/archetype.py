@@ -1,15 +1,13 @@
 """A kind of machine with its tests and thermometers, and what its logger would have written."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
 
 from hidden.truth.body import Array, Body, Joint, Skeleton, skeleton
-from hidden.truth.change import Change
-from hidden.truth.draw import Draw
+from hidden.truth.change import NOTHING, Change
+from hidden.truth.draw import Draw, Listing
 from hidden.truth.machine import Machine, Term
 from hidden.truth.profile import air, between, fine_times, log_times
 from hidden.truth.readings import Logger, Sensor, read, recorded, with_gaps
@@ -81,7 +79,8 @@ class Archetype:
     thermometers : where they really are, by the internal name of the place;  baths : measured boundaries
 
     missing : effects that can be hidden;  passing : those that can hold in one test or for a while
-    foreign, faults, absorbed : (label, change from a seed) of the other classes;  tense : priors that can be wrong
+    foreign, faults, absorbed : (label, change from a seed) of the other classes
+    tense : drawn parameters whose priors can be wrong;  doubted : sd of those that a user doubts otherwise than drawn
     parts : the user's nodes and the bodies they stand for;  called : internal name of a place or input -> the user's
     words : a hidden name of ours -> the names in the catalogue that are right, where CATALOGUE does not say so
     spans : the user's nodes that stand for a piece of their body, and from where to where (0 to 1) it reaches
@@ -97,9 +96,10 @@ class Archetype:
     faults: Mapping[str, Callable[[int], Change]]
     foreign: Mapping[str, Callable[[int], Change]]
     absorbed: Mapping[str, Callable[[int], Change]]
-    tense: Mapping[str, float]
+    tense: tuple[str, ...]
     parts: Mapping[str, str]
     baths: Mapping[str, Spot] = field(default_factory=dict)
+    doubted: Mapping[str, float] = field(default_factory=dict)
     passing: tuple[Hidden, ...] = ()
     logger: Logger = field(default_factory=Logger)
     called: Mapping[str, str] = field(default_factory=dict)
@@ -111,6 +111,12 @@ class Archetype:
         kind, _, place = name.partition("@")
         usual = tuple(f"{word}@{self.called.get(place, place)}" for word in CATALOGUE.get(kind, ()))
         return self.words.get(name) or usual or (name,)
+
+    def spreads(self) -> dict[str, float]:
+        """Every drawn parameter -> the sd of its logarithm."""
+        listing = Listing(0)
+        self.build(listing, NOTHING)
+        return listing.asked
 
     def build(self, d: Draw, change: Change) -> Machine:
         """The machine of one draw with what is hidden in it."""

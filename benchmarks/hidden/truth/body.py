@@ -1,7 +1,5 @@
 """Skeleton of a machine: bodies cut into cells, joints between them. Conductivity and capacity vary with T."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 

@@ -1,7 +1,5 @@
 """The tests an engineer can be asked for, carried out on the true machine. Made from a driven test's inputs."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Mapping
 from dataclasses import replace
 

@@ -1,7 +1,5 @@
 """What is different in a true machine from the one that was drawn: effects, conditions, faults of measurement."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
 
@@ -40,9 +38,9 @@ class Change:
     inputs: Mapping[str, Recorded] = field(default_factory=dict)
     driven: Mapping[str, Recorded] = field(default_factory=dict)
     shown: Mapping[str, Callable[[Array], Array]] = field(default_factory=dict)
-    in_test: Mapping[str, Change] = field(default_factory=dict)
+    in_test: "Mapping[str, Change]" = field(default_factory=dict)
 
-    def __add__(self, other: Change) -> Change:
+    def __add__(self, other: "Change") -> "Change":
         factors = {k: self.factors.get(k, 1.0) * other.factors.get(k, 1.0) for k in {**self.factors, **other.factors}}
         return Change(
             factors,
@@ -63,7 +61,7 @@ class Change:
         """Can it hold for a while?  Heat, films and flows can, parts and their joints cannot."""
         return not (self.bodies or self.joints or self.factors)
 
-    def during(self, test: str) -> Change:
+    def during(self, test: str) -> "Change":
         """What is different while a test runs."""
         own = self.in_test.get(test)
         return self if own is None else replace(self, in_test={}) + own

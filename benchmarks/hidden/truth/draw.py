@@ -1,7 +1,5 @@
 """True parameters: lognormal around what the drawing says, each from its own random stream."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
@@ -31,3 +29,15 @@ class Draw:
 
     def between(self, key: str, low: float, high: float) -> float:
         return float(self.stream(key).uniform(low, high))
+
+
+class Listing(Draw):
+    """A draw that remembers what was asked for: parameter -> sd."""
+
+    @property
+    def asked(self) -> dict[str, float]:
+        return self.__dict__.setdefault("_asked", {})
+
+    def factor(self, key: str, sd: float) -> float:
+        self.asked[key] = sd
+        return super().factor(key, sd)

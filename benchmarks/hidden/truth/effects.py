@@ -1,8 +1,6 @@
 """Hidden effects in the true machines' own terms. Amplitudes are those an engineer would quote; laws and places differ
 from any textbook's: they sit on cells, bend with temperature, and follow other exponents."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Mapping, Sequence
 
 import numpy as np

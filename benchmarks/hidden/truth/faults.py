@@ -1,7 +1,5 @@
 """Faults of the measurement, as they happen to readings (time, T, ambient) -> T."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterable
 
 import numpy as np

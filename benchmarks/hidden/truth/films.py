@@ -1,7 +1,5 @@
 """Heat transfer coefficients (W/m2/K) of films, and losses (W). T in degC, lengths in m, speeds in m/s or rpm, A."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 
 import numpy as np
@@ -81,9 +79,9 @@ def across_gap(s: Skeleton, rotor: str, stator: str, area: float, r: float, g: f
     return Film("gap", inner[:n], outer[:n], np.full(n, area / n), h)
 
 
-def stirred(rpm: float, r: float, k1: float, k2: float) -> float:
-    """End space, Schubert 1968: k1 (1 + k2 v^0.9), v the rotor's tip speed."""
-    return k1 * (1.0 + k2 * (abs(rpm) * np.pi / 30.0 * r) ** 0.9)
+def stirred(r: float, k1: float, k2: float) -> FilmLaw:
+    """End space, Schubert 1968: k1 (1 + k2 v^0.9), v the tip speed of a rotor of radius r."""
+    return lambda T, Ta, u: k1 * (1.0 + k2 * (abs(u["speed_rpm"]) * np.pi / 30.0 * r) ** 0.9)
 
 
 def water(T: Array) -> tuple[Array, Array, Array]:
@@ -133,6 +131,6 @@ def magnet_eddy(P: float, rated_rpm: float) -> LossLaw:
     return lambda T, u: P * (abs(u["speed_rpm"]) / rated_rpm) ** 1.9 / (1.0 + 0.0005 * (T - 40.0))
 
 
-def bearing(P: float, rated_rpm: float, thinning: float = 0.006) -> LossLaw:
-    """Grease-lubricated: P f^1.1 at 40 degC, f relative to the rated speed; less as the grease thins (per K)."""
-    return lambda T, u: P * (abs(u["speed_rpm"]) / rated_rpm) ** 1.1 * np.exp(-thinning * (T - 40.0))
+def bearing(P: float, rated_rpm: float, thinning: float = 0.006, power: float = 1.1, at: float = 40.0) -> LossLaw:
+    """Grease-lubricated: P f^power `at` degC, f relative to the rated speed; less as the grease thins (per K)."""
+    return lambda T, u: P * (abs(u["speed_rpm"]) / rated_rpm) ** power * np.exp(-thinning * (T - at))

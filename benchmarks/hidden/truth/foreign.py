@@ -1,7 +1,5 @@
 """Effects that no catalogue has."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 

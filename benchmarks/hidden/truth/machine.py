@@ -1,7 +1,5 @@
 """A machine: skeleton, films and losses, integrated by BDF2 with a simplified Newton iteration."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import Protocol

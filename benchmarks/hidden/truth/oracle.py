@@ -6,8 +6,6 @@ adjusted freely; what is left is weighed against model error of 0.4 K that is co
 size is the amplitude that makes a deviation of ten.
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
@@ -71,14 +69,6 @@ class Course:
         return np.asarray(out / C)
 
 
-class Listing(Draw):
-    """A draw that remembers what was asked for."""
-
-    def factor(self, key: str, sd: float) -> float:
-        self.__dict__.setdefault("asked", {})[key] = sd
-        return super().factor(key, sd)
-
-
 def course(kind: Archetype, plan: Plan, seed: int) -> Course:
     draw = Draw(seed)
     machine = kind.build(draw, NOTHING)
@@ -102,9 +92,7 @@ def whitened(columns: Array) -> Array:
 def adjustable(kind: Archetype, seed: int, one: Course) -> Array:
     """Answers (n, channels, p) to everything that calibration may move in all tests alike, at one deviation."""
     columns = []
-    listing = Listing(seed)
-    kind.build(listing, NOTHING)
-    for key, sd in dict(listing.__dict__["asked"]).items():
+    for key, sd in kind.spreads().items():
         changed = kind.build(Draw(seed, {key: 1.0 + STEP}), NOTHING)
         columns.append(one.slopes(changed, NOTHING) * WIDER * sd / STEP)
     moved = one.answer(np.stack(columns, axis=2))

@@ -1,7 +1,5 @@
 """Load profiles: levels held for some minutes with ramps one logging interval long."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from hidden.truth.body import Array

@@ -1,7 +1,5 @@
 """What the logger wrote: placement, lag, clock, bias, drift, steps, gaps; and inputs that are a little wrong."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 

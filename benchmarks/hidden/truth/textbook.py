@@ -3,8 +3,6 @@
 They tell which explanations of a hidden effect come so near that no one could be sure. Names are the catalogue's.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 

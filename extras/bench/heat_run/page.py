@@ -1,7 +1,5 @@
 """The page that a test house signs: verdict, rises, what was measured when, limits with their clauses, names."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from html import escape
 from pathlib import Path
@@ -107,7 +105,7 @@ def page(document: Document) -> str:
 
 
 @th.paper.styled
-def _warming(document: Document) -> Figure:
+def _warming(document: Document) -> "Figure":
     figure, (ax,) = th.paper.subplots(4.6, 1.7)
     minutes, T = np.array(document["readings"]["warming"], float).T
     ax.plot(minutes, T, color=th.BLUE, lw=1.2)
@@ -118,7 +116,7 @@ def _warming(document: Document) -> Figure:
 
 
 @th.paper.styled
-def _cooling(document: Document) -> Figure:
+def _cooling(document: Document) -> "Figure":
     """Readings as temperatures by the cold one, and every way's value at the instant it stands for."""
     figure, (ax,) = th.paper.subplots(4.6, 1.7)
     seconds, ohm = np.array(document["readings"]["cooling"], float).T

@@ -22,11 +22,13 @@ SOON_S = 0.1  # after the last sample under load: the machine is off
 
 
 @dataclass(frozen=True)
-class Rise:
+class Rise(th.TableRow):
     """Rise over the coolant by one method.  U95_K : expanded uncertainty;  at_s : what instant it stands for
 
     temperature_degC, rise_K, U95_K : None where it was not measured;  limit_K : None where there is none
     """
+
+    properties = ("margin_K", "verdict")
 
     method: str
     at_s: float | None = None
@@ -51,9 +53,6 @@ class Rise:
         if self.limit_K is None or abs(self.limit_K - self.rise_K) < self.U95_K:
             return "cannot be judged"
         return "passes" if self.rise_K <= self.limit_K else "fails"
-
-    def document(self) -> dict[str, Any]:
-        return {**vars(self), "margin_K": self.margin_K, "verdict": self.verdict}
 
 
 def resistance_rise(R1: Any, R2: Any, t1: Any, ta: Any, k: float = K_OF["copper"]) -> Any:

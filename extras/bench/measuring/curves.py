@@ -1,7 +1,5 @@
 """What the warming curves of a case say: eq. 8 and eq. 9 for every sensor, the 3 to 4 % rule, equal tests pooled."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, Literal, TypeVar
@@ -38,7 +36,7 @@ class Curves:
 
     case: th.MeasuredCase
     curves: dict[str, tuple[Curve, ...]]
-    rules: dict[str, tuple[Assembly, ...]]
+    rules: "dict[str, tuple[Assembly, ...]]"
     pooled: dict[tuple[tuple[str, ...], str], Repeats]
 
     @property
@@ -104,7 +102,7 @@ def constant(test: th.Test) -> bool:
     return all(np.std(v[1:]) <= STEADY * max(abs(float(np.mean(v[1:]))), 1e-12) for v in test.inputs.values())
 
 
-def _rules(test: th.Test, predicted: th.Array, resolution_K: float) -> tuple[Assembly, ...]:
+def _rules(test: th.Test, predicted: th.Array, resolution_K: float) -> "tuple[Assembly, ...]":
     window = max((window_min(test, c) for c in test.channels), default=10.0)
     rules, _ = _result_or_reason(lambda: assemblies(test, predicted, resolution_K, window))
     return tuple(rules or ())
@@ -155,12 +153,14 @@ Verdict = Literal["calibrated", "allowed", "correct the model", "beyond 7 %"]
 
 
 @dataclass(frozen=True)
-class Assembly:
+class Assembly(th.TableRow):
     """T_e measured and calculated (degC) of one assembly, at equilibrium or, where it was not reached, at the end.
 
     percent : of the measured temperature in degC, as published;  percent_of_rise : of its rise over ambient
     U95_percent : what the reading itself is uncertain by; where it is more than the rule, the rule asks too much
     """
+
+    properties = ("verdict",)
 
     place: str
     steady: bool
@@ -178,9 +178,6 @@ class Assembly:
             (NEVER, "correct the model"),
         )
         return next((word for limit, word in limits if self.percent <= limit), "beyond 7 %")
-
-    def document(self) -> dict[str, Any]:
-        return {**vars(self), "verdict": self.verdict}
 
 
 def assembly(place: str, T_exp: tuple[float, bool], T_calc: float, ambient: float, u_K: float = 0.0) -> Assembly:
@@ -200,7 +197,8 @@ def assemblies(
     for place in dict.fromkeys(c.place for c in test.channels):
         columns = [j for j, c in enumerate(test.channels) if c.place == place and np.isfinite(c.y).any()]
         if columns:
-            y = np.nanmean([test.channels[j].y for j in columns], axis=0)
+            read = np.ma.masked_invalid([test.channels[j].y for j in columns])
+            y = read.mean(axis=0).filled(np.nan)  # where none was read there is no mean
             end = equilibrium(test.time / 60.0, y, resolution_K, window_min)
             late = test.time >= test.time[-1] - 60.0 * window_min
             calculated = float(np.mean(predicted[late][:, columns]))

@@ -61,7 +61,7 @@ class Record:
 
 
 @dataclass(frozen=True)
-class Step:
+class Step(th.TableRow):
     """One thing to do: what, when, why, and how the record stands to it."""
 
     name: str
@@ -69,9 +69,6 @@ class Step:
     what: str
     state: State = "to do"
     words: str = ""
-
-    def document(self) -> dict[str, Any]:
-        return dict(vars(self))
 
 
 @dataclass(frozen=True)

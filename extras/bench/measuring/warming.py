@@ -62,8 +62,9 @@ class Warming:
 
 
 def eq8(minutes: Any, a: Any, b: Any, c: Any) -> Any:
-    """T = a exp(b exp(c t))."""
-    return a * np.exp(b * np.exp(c * np.asarray(minutes, float)))
+    """T = a exp(b exp(c t)); infinite where a trial of the fit is far off."""
+    with np.errstate(over="ignore"):
+        return a * np.exp(b * np.exp(c * np.asarray(minutes, float)))
 
 
 def fit_eq8(minutes: th.Array, T: th.Array, start_C: float | None = None, resolution_K: float = 0.5) -> Warming:
@@ -107,7 +108,7 @@ def _doubts(fit: Warming, measured: float | None, last_min: float) -> tuple[str,
 
 
 @dataclass(frozen=True)
-class Equilibrium:
+class Equilibrium(th.TableRow):
     """reached : whether eq. 9 held to the end;  from_min : since when (min);  T_e : mean since then (degC)
 
     drift_K_h : slope over the last window (K/h);  resolution_K : of the sensor
@@ -118,9 +119,6 @@ class Equilibrium:
     T_e: float
     drift_K_h: float
     resolution_K: float
-
-    def document(self) -> dict[str, Any]:
-        return dict(vars(self))
 
 
 def spaced_window(minutes: th.Array, least_min: float = 10.0) -> float:
@@ -155,13 +153,15 @@ LEVEL = 0.05  # significance: how often equal runs are said to differ
 
 
 @dataclass(frozen=True)
-class Repeats:
+class Repeats(th.TableRow):
     """mean : pooled value;  sd_mean : its standard uncertainty from the runs' scatter, never less than u / sqrt(n)
 
     spread : largest difference between two runs
     limit : what 95 % of pairs of runs stay below if only the measurement's random uncertainty acts (2.77 u, ISO 5725)
     p : of chi-square = sum (x - mean)^2 / u^2
     """
+
+    properties = ("repeat",)
 
     n: int
     mean: float
@@ -175,9 +175,6 @@ class Repeats:
     def repeat(self) -> bool:
         """Whether the runs differ by no more than their uncertainty lets them."""
         return self.p >= LEVEL
-
-    def document(self) -> dict[str, Any]:
-        return {**vars(self), "repeat": self.repeat}
 
 
 def repeats(values: Sequence[float], u: float) -> Repeats:

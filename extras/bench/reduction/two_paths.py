@@ -122,12 +122,14 @@ LATE = 0.25  # share of a test at its end that is compared: where it has settled
 
 
 @dataclass(frozen=True)
-class Row:
+class Row(th.TableRow):
     """One sensor in one test, means over the settled end (degC).
 
     U95_K : 95 % uncertainty of the measurement;  worst_K : its worst case, cold and hot meter both at their limits, the
     bound that the procedure's paper holds the difference against
     """
+
+    properties = ("difference_K", "within")
 
     test: str
     channel: str
@@ -143,9 +145,6 @@ class Row:
     @property
     def within(self) -> bool:
         return abs(self.difference_K) <= self.worst_K
-
-    def document(self) -> dict[str, Any]:
-        return {**vars(self), "difference_K": self.difference_K, "within": self.within}
 
 
 @dataclass(frozen=True)

@@ -6,8 +6,6 @@ r : how much thinner the coolant is than at the usual inlet. Where the coolant's
 1 / G has 1 / (2 m cp) more.  Sums with an exponent: Churchill and Usagi 1972, AIChE Journal 18, 1121.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from itertools import combinations
@@ -58,7 +56,7 @@ class Form:
         more = (("at",), self.limit is not None), (("m",), self.blend), (("G0",), self.ambient)
         return out + [label for label, there in more if there]
 
-    def larger(self, tests: SteadyTests) -> Iterator[Form]:
+    def larger(self, tests: SteadyTests) -> "Iterator[Form]":
         """Forms that have one thing more."""
         for power in self.powers:
             if power not in self.proportional:

@@ -1,7 +1,5 @@
 """A table of steady tests, read and checked: inputs, one heat, the coolant's inlet, ambient, temperatures."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from fnmatch import fnmatchcase
@@ -73,7 +71,7 @@ class SteadyTests:
         """(n,) sd of a test about the law, over that at the usual rise: its square grows with the rise."""
         return np.asarray(np.sqrt(np.maximum((T - self.coolant) / self.scales.rise, LEAST_RISE)))
 
-    def only(self, rows: th.Ints) -> SteadyTests:
+    def only(self, rows: th.Ints) -> "SteadyTests":
         """Some of the tests, on the scales of all of them."""
         names = ("inputs", "heat", "coolant", "ambient", "readings", "thinner", "mcp")
         return replace(self, **{name: getattr(self, name)[rows] for name in names})

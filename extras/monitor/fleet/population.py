@@ -9,8 +9,6 @@ broken motor does not widen the spread of the others. Sources: Gelman et al. 201
 1989 (t weights); Self and Liang 1987 (test of a variance at its bound).
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
@@ -81,7 +79,7 @@ class _Moments:
     mean: th.Array
     variance: th.Array
 
-    def with_mean(self, weights: th.Array) -> _Moments:
+    def with_mean(self, weights: th.Array) -> "_Moments":
         """With the mean that is likeliest under these variances."""
         bare = replace(self, mean=np.zeros_like(self.mean))
         M, u = bare.outside()

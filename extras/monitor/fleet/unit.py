@@ -8,8 +8,6 @@ parameters taken off again. What is left is a normal likelihood of the parameter
 so that recordings of one motor add up, and no recording has to be kept.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -37,7 +35,7 @@ class Statistics:
     rmse_K: float
     samples: int
 
-    def __add__(self, other: Statistics) -> Statistics:
+    def __add__(self, other: "Statistics") -> "Statistics":
         n = self.samples + other.samples
         square = (self.samples * self.rmse_K**2 + other.samples * other.rmse_K**2) / n
         return Statistics(

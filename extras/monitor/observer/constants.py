@@ -5,8 +5,6 @@ or liquid (speed, flow): (1 + a |u| / rms u), a >= 0, whose prior is as wide as 
 sensor, by the table of doubt: the share of each neighbour in its reading, its slope and its bias.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
@@ -27,7 +25,7 @@ class Sensor:
     channel: th.Channel
     bias_K: float = 0.0
 
-    def of(self, c: th.Channel) -> Sensor:
+    def of(self, c: th.Channel) -> "Sensor":
         """The same sensor in another recording, which has its own lag."""
         return replace(self, channel=replace(c, row=self.channel.row))
 

@@ -1,7 +1,5 @@
 """Numbers of a machine file that a design may change, by their keys with dots: geometry.jacket.height_mm."""
 
-from __future__ import annotations
-
 import copy
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
@@ -42,7 +40,7 @@ class MachineFile:
     machine: th.MachineDescription
 
     @classmethod
-    def read(cls, file: Path) -> MachineFile | None:
+    def read(cls, file: Path) -> "MachineFile | None":
         """By its path or the name of a machine that comes along; None for a STEP file, which has no keys."""
         path = file if file.exists() else th.library()[file.name.removesuffix(".toml")]
         if path.suffix != ".toml":

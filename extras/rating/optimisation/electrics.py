@@ -5,8 +5,6 @@ left out. Current and voltage are limited by the controller itself; what a desig
 coolant and air costs pressure along their ways times flow over the efficiency of pump or fan.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
@@ -101,7 +99,7 @@ class Driven:
     slope: th.Array
     warm: float = 1.0
 
-    def at(self, degC: float, reference_degC: float) -> Driven:
+    def at(self, degC: float, reference_degC: float) -> "Driven":
         """With the winding at a temperature."""
         return replace(self, warm=1.0 + th.ALPHA_CU * (degC - reference_degC))
 

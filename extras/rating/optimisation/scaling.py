@@ -3,8 +3,6 @@
 Conduction stays that of the reference; what its change does is learned apart (corrections.py).
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 
 import numpy as np
@@ -49,7 +47,7 @@ class Scaling:
                 out |= self._face(face, there, inputs)
         return out
 
-    def _face(self, face: th.Place, there: Films, inputs: Mapping[str, float]) -> dict[str, float]:
+    def _face(self, face: th.Place, there: "Films", inputs: Mapping[str, float]) -> dict[str, float]:
         fluid = th.stem(str(face.fluid))
         areas = self.area_ratio(there, face.part, fluid)
         if fluid in self.liquids:
@@ -62,7 +60,7 @@ class Scaling:
         ratio = {m: _value(new[m], inputs) / max(_value(old[m], inputs), 1e-12) for m in old if m in new}
         return {names[m]: areas * r for m, r in ratio.items() if names[m] in self.known}
 
-    def area_ratio(self, there: Films, part: str, fluid: str) -> float:
+    def area_ratio(self, there: "Films", part: str, fluid: str) -> float:
         """Of the faces between a part and a fluid: a jacket's by its own walls, the rest by those of the part."""
         name = fluid if fluid in self.liquids else part
         return there.walls(name) / self.here.walls(name)

@@ -20,8 +20,16 @@ from lumped.machine.air import Stirred
 from lumped.machine.bases import Switched
 from lumped.sources.inverter import InverterLoss, PulseLoss
 from lumped.sources.layer_loss import by_dowell
-from lumped.sources.loss_laws import BrushLoss, CopperLoss, EddyLoss, IronLoss, MeasuredLoss, PowerLoss, RippleLoss
-from lumped.sources.loss_map import MapLoss
+from lumped.sources.loss_laws import (
+    BrushLoss,
+    CopperLoss,
+    EddyLoss,
+    IronLoss,
+    MapLoss,
+    MeasuredLoss,
+    PowerLoss,
+    RippleLoss,
+)
 from lumped.transfer.exchanger import Exchanger, Flow
 from lumped.transfer.laws import CONSTANT, AtUsualTemperature, Fixed, InputPower, Law, Power, Scaled, WithTemperature
 from lumped.transfer.properties import water

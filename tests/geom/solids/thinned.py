@@ -1,7 +1,5 @@
 """A machine with one of each kind of prism: the 48th slot liner adds work to a CAD kernel, but nothing to a test."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
 

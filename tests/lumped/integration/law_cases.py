@@ -17,8 +17,16 @@ from lumped.machine.air import Stirred
 from lumped.machine.bases import Switched
 from lumped.sources.inverter import InverterLoss, PulseLoss
 from lumped.sources.layer_loss import LayerLoss, by_dowell, from_map
-from lumped.sources.loss_laws import BrushLoss, CopperLoss, EddyLoss, IronLoss, MeasuredLoss, PowerLoss, RippleLoss
-from lumped.sources.loss_map import MapLoss
+from lumped.sources.loss_laws import (
+    BrushLoss,
+    CopperLoss,
+    EddyLoss,
+    IronLoss,
+    MapLoss,
+    MeasuredLoss,
+    PowerLoss,
+    RippleLoss,
+)
 from lumped.transfer.exchanger import Exchanger, Flow, counterflow
 from lumped.transfer.laws import (
     CLOCK,

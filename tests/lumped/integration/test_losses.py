@@ -12,8 +12,7 @@ from lumped.integration.balance import audit
 from lumped.integration.signals import Signals
 from lumped.integration.simulate import Record, simulate
 from lumped.sources.inverter import InverterLoss, PulseLoss
-from lumped.sources.loss_laws import IronLoss, RippleLoss
-from lumped.sources.loss_map import MapLoss
+from lumped.sources.loss_laws import IronLoss, MapLoss, RippleLoss
 from lumped.transfer.laws import Law
 
 AT = {"speed_rpm": np.array([0.0, 1000.0, 2000.0]), "current_A": np.array([0.0, 100.0, 200.0])}

@@ -8,9 +8,8 @@ from one_body import LOSS, G, P, measured, one_node
 
 from measured.case import Case, Model
 from validation.comparison.compare import compare
-from validation.comparison.residuals import dependence, ljung_box, periodogram
 from validation.comparison.uncertainty import uncertainties
-from validation.discrepancy import discrepancies
+from validation.discrepancy import dependence, discrepancies, ljung_box, periodogram
 
 RNG = np.random.default_rng(0)
 WHITE = RNG.standard_normal((200, 400))

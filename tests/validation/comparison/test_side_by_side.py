@@ -9,7 +9,7 @@ from tests.shared.small_case import small_case
 from thermoscope.case_folder.folder import load_case
 from validation import threads
 from validation.comparison.compare import StoppedComparisonError, compare
-from validation.counting import listening
+from validation.threads import listening
 
 
 @pytest.fixture(scope="module")

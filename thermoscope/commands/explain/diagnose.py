@@ -1,7 +1,5 @@
 """thermoscope explain diagnose CASE"""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import replace
 from math import inf, isfinite
@@ -54,7 +52,7 @@ class SoFar:
         self.progress, self.begun, self.shown = progress, monotonic(), False
         self.result: Callable[[], Diagnosis] | None = None
 
-    def learn(self, result: Callable[[], Diagnosis]) -> None:
+    def learn(self, result: "Callable[[], Diagnosis]") -> None:
         """Told what works out the diagnosis as far as it is known."""
         self.result = result
 
@@ -66,7 +64,7 @@ class SoFar:
             notes([f"after {LONG_S / 60:.0f} min: {self.result().words}"])
 
 
-def _stopped(folder: Folder, so_far: SoFar, called: str) -> None:
+def _stopped(folder: "Folder", so_far: SoFar, called: str) -> None:
     """What is known of a diagnosis that the user stopped: its first odds, or before there are any the comparison, where
     it is at hand or quick."""
     if so_far.result:
@@ -81,13 +79,13 @@ def _stopped(folder: Folder, so_far: SoFar, called: str) -> None:
 
 
 def diagnosed(
-    folder: Folder,
+    folder: "Folder",
     tell: Progress,
     without: Sequence[str] = (),
     only: Sequence[str] = (),
     quick: bool = False,
-    report: Callable[[Callable[[], Diagnosis]], None] | None = None,
-) -> tuple[Diagnosis, dict[str, Any]]:
+    report: "Callable[[Callable[[], Diagnosis]], None] | None" = None,
+) -> "tuple[Diagnosis, dict[str, Any]]":
     """What is missing in an open case, and the document of it, which is kept in the case's out/ unless preliminary.
 
     without, only : what is left out of the question, see Scope;  quick, report : see `validation.diagnose`
@@ -116,7 +114,7 @@ def diagnosed(
     return diagnosis, document
 
 
-def _trial(folder: Folder, effects: Sequence[str], tell: Progress) -> dict[str, Any]:
+def _trial(folder: "Folder", effects: Sequence[str], tell: Progress) -> dict[str, Any]:
     """What `add` would say of effects that are not sure: nothing is proposed that it refuses."""
     from validation.revision.revise import add
 

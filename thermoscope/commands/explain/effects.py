@@ -1,7 +1,5 @@
 """thermoscope explain effects [CASE]"""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
@@ -37,7 +35,7 @@ def effects(
     return 0
 
 
-def _described(kind: type[Effect], scene: Scene | None) -> dict[str, Any]:
+def _described(kind: "type[Effect]", scene: "Scene | None") -> dict[str, Any]:
     about = {
         "effect": kind.kind,
         "title": kind.title,

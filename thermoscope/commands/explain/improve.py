@@ -1,7 +1,5 @@
 """thermoscope explain improve CASE"""
 
-from __future__ import annotations
-
 import json
 import sys
 from collections.abc import Mapping, Sequence
@@ -72,7 +70,7 @@ class Ledger:
         self.folder, self.file, self.written = folder, folder.settings.model_file, 0
         self.history: History = folder.history
 
-    def keep(self, step: Revision, evidence: Mapping[str, float | str]) -> None:
+    def keep(self, step: "Revision", evidence: Mapping[str, float | str]) -> None:
         self.history = save_history(self.file, self.history.and_then(recorded(step, evidence)), self.history)
         self.written += 1
         write_columns(self.folder, self.history.last.effects)
@@ -88,7 +86,7 @@ class Ledger:
         notes([f"stopped: {counted(self.written, 'revision')} written to {self.file} and kept"])
 
 
-def user_choice(diagnosis: Diagnosis, choice: Sequence[Candidate]) -> str | None:
+def user_choice(diagnosis: "Diagnosis", choice: "Sequence[Candidate]") -> str | None:
     """The user's word, on stderr and stdin: a number of the list, or nothing to stop."""
     lines = [f"  {i + 1}  {offer(c)}" for i, c in enumerate(choice)]
     print("\n".join(map(visible, [diagnosis.words, *lines])), file=sys.stderr)
@@ -101,7 +99,7 @@ def user_choice(diagnosis: Diagnosis, choice: Sequence[Candidate]) -> str | None
     return choice[int(word) - 1].effect if word.isdecimal() and 1 <= int(word) <= len(choice) else None
 
 
-def offer(c: Candidate) -> str:
+def offer(c: "Candidate") -> str:
     """A candidate as the question shows it."""
     size = f"{with_interval(c.value, *c.ci95)} {c.unit}".removesuffix(" 1")
     return f"{c.words}, {size}, odds {percent(c.probability)}"

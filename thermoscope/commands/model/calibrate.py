@@ -1,7 +1,5 @@
 """thermoscope model calibrate CASE"""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from fnmatch import fnmatchcase
 from pathlib import Path
@@ -41,7 +39,7 @@ def calibrate(
     from validation.calibration.staged_fit import Search
     from validation.revision.revise import calibrate as fitted
 
-    def step(folder: Folder, tell: Progress) -> Revision:
+    def step(folder: Folder, tell: Progress) -> "Revision":
         unfinished = Unfinished(folder)
         usual = folder.settings
         many, first_seed = usual.starts if starts is None else starts, usual.seed if seed is None else seed

@@ -1,7 +1,5 @@
 """thermoscope model crosscheck MACHINE"""
 
-from __future__ import annotations
-
 import json
 from collections.abc import Mapping, Sequence
 from contextlib import suppress
@@ -44,7 +42,7 @@ def crosscheck(machine: Machine, out: Out = None, accuracy: Accuracy = ACCURACY,
     return 0 if size.met else 1
 
 
-def checked(built: Built, size: NetworkSize | None, tell: Progress) -> dict[str, Any]:
+def checked(built: "Built", size: "NetworkSize | None", tell: "Progress") -> dict[str, Any]:
     """Part by part and link by link at a point where the machine settles, and the hand formulas there."""
     from lumped.build.analytical_checks import analytical_checks
     from lumped.build.crosscheck import crosscheck as compare, with_local_laws
@@ -77,7 +75,7 @@ def checked(built: Built, size: NetworkSize | None, tell: Progress) -> dict[str,
     }
 
 
-def bearable(built: Built) -> tuple[dict[str, float], Array]:
+def bearable(built: "Built") -> tuple[dict[str, float], Array]:
     """The rated point with its load lowered until the machine settles, and where its network does (degC): a
     short-time rating has no steady state. The small network looks first, in a hundredth of the time.
 
@@ -102,7 +100,7 @@ def bearable(built: Built) -> tuple[dict[str, float], Array]:
     return point, z
 
 
-def _rest(network: Network, point: Mapping[str, float]) -> Array | None:
+def _rest(network: "Network", point: Mapping[str, float]) -> Array | None:
     """Where a network comes to rest (degC), None where that is too hot for insulation, or nowhere."""
     from lumped.build.crosscheck import steady_state
 

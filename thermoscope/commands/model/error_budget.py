@@ -1,7 +1,5 @@
 """The error budget as a table: place by place the run in which most is left."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
@@ -16,7 +14,7 @@ Steps = Mapping[str, Mapping[str, Any]]
 LEAST_K = 0.001  # below it a number only says that arithmetic is exact; no thermometer shows as much
 
 
-def sampling(folder: Folder) -> dict[str, dict[str, Any]]:
+def sampling(folder: "Folder") -> dict[str, dict[str, Any]]:
     """The step at which every test is looked at, and what that leaves, for a document."""
     return {"sampling": {name: step.document() for name, step in folder.steps.items()}}
 

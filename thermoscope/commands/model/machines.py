@@ -1,7 +1,5 @@
 """thermoscope model machines"""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import asdict
 from difflib import get_close_matches
@@ -55,7 +53,7 @@ def write_machine_file(name: str, text: str | bytes, folder: Path) -> Path:
     return write_whole(target, text)
 
 
-def described(entry: Entry, page: Path | None) -> dict[str, Any]:
+def described(entry: "Entry", page: Path | None) -> dict[str, Any]:
     """One machine of the document: mass in kg, envelope in m, thumbnail if one was written."""
     fields = {
         ("mass_kg" if k == "mass" else "envelope_m" if k == "envelope" else k): v for k, v in asdict(entry).items()
@@ -63,7 +61,7 @@ def described(entry: Entry, page: Path | None) -> dict[str, Any]:
     return fields if page is None else {**fields, "thumbnail": page.parent / "thumbnails" / f"{entry.name}.svg"}
 
 
-def machines_summary(entries: Sequence[Entry], page: Path | None) -> Summary:
+def machines_summary(entries: "Sequence[Entry]", page: Path | None) -> Summary:
     """A row per machine."""
     table = Table.of(
         "",

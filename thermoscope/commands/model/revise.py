@@ -1,7 +1,5 @@
 """thermoscope model add | remove CASE EFFECT@PLACE, thermoscope model undo CASE"""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from math import isfinite
@@ -41,7 +39,7 @@ def add(case: Case, effect: Effects, anyway: Anyway = False, target: Json = None
     held-out ones too. Accepted is what predicts tests left out of the fit better than before."""
     from validation.revision.revise import add as added
 
-    def step(folder: Folder, tell: Callable[[str], None]) -> revise.Revision:
+    def step(folder: Folder, tell: Callable[[str], None]) -> "revise.Revision":
         before = None if folder.stored is None else folder.stored.comparison
         return added(folder.case, [meant(folder, one) for one in effect], tell, before)
 
@@ -95,7 +93,7 @@ def undo(
     return 0
 
 
-def revised(case: str, step: Callable[..., revise.Revision], anyway: bool, target: str | None) -> int:
+def revised(case: str, step: "Callable[..., revise.Revision]", anyway: bool, target: str | None) -> int:
     """Open, take the step, keep it if it is accepted, show it. `step` is given folder and progress."""
     with progress() as tell:
         folder = open_case_for_writing(case, tell)
@@ -120,7 +118,7 @@ def revised(case: str, step: Callable[..., revise.Revision], anyway: bool, targe
     return 0 if result.accepted or anyway else 1
 
 
-def unmeasured(folder: Folder, result: revise.Revision) -> list[dict[str, Any]]:
+def unmeasured(folder: Folder, result: "revise.Revision") -> list[dict[str, Any]]:
     """Bodies without a sensor, the one that the step moved most first: at the end of the most telling test.
 
     Only those that losses heat; nobody limits the others.
@@ -138,7 +136,7 @@ def unmeasured(folder: Folder, result: revise.Revision) -> list[dict[str, Any]]:
     return sorted(out, key=lambda p: -abs(p["after_C"] - p["before_C"]))
 
 
-def recorded(result: revise.Revision, evidence: Mapping[str, float | str]) -> Revision:
+def recorded(result: "revise.Revision", evidence: Mapping[str, float | str]) -> Revision:
     """A step as model.toml keeps it."""
     effects, values = tuple(e.name for e in result.model.effects), dict(result.model.values)
     intervals = {p.name: p.ci95 for p in result.parameters}
@@ -147,7 +145,7 @@ def recorded(result: revise.Revision, evidence: Mapping[str, float | str]) -> Re
     return replace(step, reference=result.model.reference)
 
 
-def evidence(folder: Folder, result: revise.Revision) -> dict[str, float | str]:
+def evidence(folder: Folder, result: "revise.Revision") -> dict[str, float | str]:
     """What the last diagnosis of this very model said about the effect; empty when there was none."""
     diagnosis = current_diagnosis(folder) if result.action == "add" else None
     rows = [c for c in (diagnosis or {}).get("candidates", []) if c["effect"] == result.effect]

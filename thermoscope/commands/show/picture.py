@@ -1,7 +1,5 @@
 """thermoscope show picture CASE WHAT"""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import cached_property, partial
@@ -86,7 +84,7 @@ class Subject:
         return runs.instant_words(self.test, self.test.time[-1])
 
     @property
-    def built(self) -> Built:
+    def built(self) -> "Built":
         if self.folder.built is None:
             right = f"a case with a machine, or one of: {', '.join(FLAT)}"
             raise InputError("has a network declared by hand, and so no geometry", self.folder.case.name, right)
@@ -98,21 +96,21 @@ class Subject:
         viz.require_gl()
 
     @cached_property
-    def nodes(self) -> SplitMesh:
+    def nodes(self) -> "SplitMesh":
         return runs.nodes_of(self.folder, self.test)
 
     @property
-    def comparison(self) -> Comparison:
+    def comparison(self) -> "Comparison":
         """The test against the model."""
         return runs.comparison_of(self.folder, self.test)
 
     @property
-    def sensors(self) -> tuple[Sensor, ...]:
+    def sensors(self) -> "tuple[Sensor, ...]":
         """Those with a position."""
         return viz.sensors(self.comparison, self.folder.positions)
 
     @property
-    def sensors_before(self) -> tuple[Sensor, ...]:
+    def sensors_before(self) -> "tuple[Sensor, ...]":
         """The same against the model before its last step; none where there was none."""
         now = self.comparison
         return () if now.before is None else viz.sensors(replace(now, model=now.before), self.folder.positions)
@@ -126,7 +124,7 @@ class Subject:
         """(n_nodes,) degC at the end of the test."""
         return np.asarray(runs.fields(case or self.folder.case, self.test, self.nodes, 1)[1][-1])
 
-    def heat(self) -> tuple[Heat, dict[str, float], str]:
+    def heat(self) -> tuple["Heat", dict[str, float], str]:
         """Heat flows, and node -> degC, when the machine last runs in the test; and when that is."""
         from viz.figures.flows import heat_flows, last_running_step
 

@@ -1,7 +1,5 @@
 """thermoscope test compare CASE"""
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from shlex import quote
 from typing import TYPE_CHECKING, Annotated, Any
@@ -57,7 +55,7 @@ def compare(
     return 0 if result.agrees else 1
 
 
-def _stopped(folder: Folder, so_far: Comparison, called: str) -> int:
+def _stopped(folder: "Folder", so_far: "Comparison", called: str) -> int:
     """What is known of a comparison that the user stopped; no document, which others would take for the whole."""
     from validation.comparison.error_budget import documents
 
@@ -69,8 +67,8 @@ def _stopped(folder: Folder, so_far: Comparison, called: str) -> int:
 
 
 def compared(
-    folder: Folder, tell: Progress, why: bool = False, sure: bool | None = None
-) -> tuple[Comparison, dict[str, Any]]:
+    folder: "Folder", tell: Progress, why: bool = False, sure: bool | None = None
+) -> "tuple[Comparison, dict[str, Any]]":
     """An open case's model against its tests, and the document of it."""
     from thermoscope.bands import bands_requested, test_bands
     from thermoscope.case_folder.stored_comparison import yardstick_document
@@ -100,7 +98,7 @@ def compared(
     }
 
 
-def repeated(case: MeasuredCase) -> list[dict[str, Any]]:
+def repeated(case: "MeasuredCase") -> list[dict[str, Any]]:
     """Events of the model that are found in held-out tests, too; a model without any is spared what looks for them."""
     if not any(IN in e.place for e in case.model.effects):
         return []

@@ -1,7 +1,5 @@
 """thermoscope test new FILE... [--machine M | --network N] [--yes]"""
 
-from __future__ import annotations
-
 import re
 import tomllib
 from collections.abc import Callable, Iterator, Mapping, Sequence
@@ -71,7 +69,7 @@ class Model:
     first : where nobody gave one
     """
 
-    network: Network
+    network: "Network"
     target: Target
     put: Callable[[Path], str]
     first: FirstNetwork | None = None
@@ -134,7 +132,7 @@ def places(words: Sequence[str]) -> dict[str, str]:
     return {column.strip(): place.strip() for column, _, place in (word.rpartition("=") for word in words)}
 
 
-def model_of_case(settings: Settings, network: Network) -> Model:
+def model_of_case(settings: "Settings", network: "Network") -> Model:
     """The machine or the network of a case that is there, for another one."""
     if settings.network is not None:
         return Model(network, target_of(network), _copied("network", settings.network, "network.toml"))
@@ -363,7 +361,7 @@ def _document(draft: Draft, role: str) -> dict[str, Any]:
     }
 
 
-def panels(draft: Draft) -> list[Panel]:
+def panels(draft: Draft) -> "list[Panel]":
     """The columns of numbers of a test as the picture wants them."""
     from viz.figures.curves import POINTS, Panel
 

@@ -1,7 +1,5 @@
 """The true series-wound brushed motor, 15 kW, 103 cells: air is blown from the commutator's end (1) to the other."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from hidden.truth import faults, foreign
@@ -227,18 +225,8 @@ BRUSHED = Archetype(
         "fan.flow": lambda seed: Change({"fan": 0.5}),
         "loss.brushes": lambda seed: Change({"drop": 2.0, "rub": 2.0}),
     },
-    tense={
-        "bolts": 0.25,
-        "coil": 0.25,
-        "fan": 0.12,
-        "iron": 0.15,
-        "hub": 0.25,
-        "feet": 0.25,
-        "spigot-de": 0.25,
-        "rub": 0.2,
-        "still": 0.15,
-        "capacity.yoke": 0.08,
-    },
+    tense=("bolts", "coil", "fan", "iron", "hub", "feet", "spigot-de", "rub", "still", "capacity.yoke"),
+    doubted={"capacity.yoke": 0.08},
     parts=PARTS,
     passing=(
         Hidden("convection.constant@yoke", lambda a: draught("yoke", a), 60.0),

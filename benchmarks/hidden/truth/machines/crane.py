@@ -4,8 +4,6 @@ Position 0 is the drive end, 1 the blower's. The inverter weakens the field abov
 iron while it switches, at standstill as well.
 """
 
-from __future__ import annotations
-
 import numpy as np
 
 from hidden.truth import faults, foreign
@@ -228,16 +226,7 @@ CRANE = Archetype(
         "blower": lambda seed: Change({"blower": 0.5}),
         "loss.iron": lambda seed: Change({"iron": 2.2, "eddy": 2.2}),
     },
-    tense={
-        "press": 0.25,
-        "wall": 0.2,
-        "blower": 0.12,
-        "iron": 0.15,
-        "cage": 0.12,
-        "bars": 0.25,
-        "still": 0.15,
-        "stray": 0.25,
-    },
+    tense=("press", "wall", "blower", "iron", "cage", "bars", "still", "stray"),
     parts=PARTS,
     passing=(
         Hidden("draught@frame", lambda a: draught("frame", a), 60.0),

@@ -3,8 +3,6 @@
 Bodies run from the hub (0) to the rim (1). Air enters at the hub and is thrown out between the discs.
 """
 
-from __future__ import annotations
-
 import numpy as np
 
 from hidden.truth import faults, foreign
@@ -201,16 +199,7 @@ DISC = Archetype(
         "loss.iron": lambda seed: Change({"iron": 2.2}),
         "discs": lambda seed: Change({"discs": 0.45}),
     },
-    tense={
-        "resin": 0.2,
-        "clamp": 0.25,
-        "discs": 0.15,
-        "iron": 0.15,
-        "blower": 0.1,
-        "still": 0.15,
-        "rim-left": 0.25,
-        "hub-right": 0.25,
-    },
+    tense=("resin", "clamp", "discs", "iron", "blower", "still", "rim-left", "hub-right"),
     parts={
         "coils": "coils",
         "teeth": "teeth",

@@ -3,29 +3,16 @@
 Position 0 is the weld side, 1 the bend side; layer 1 lies at the bottom of the slot. The rotor flings oil about.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np
 
-from hidden.truth import faults, foreign
+from hidden.truth import faults, films, foreign
 from hidden.truth.archetype import Archetype, Hidden, Plan, Spot
 from hidden.truth.body import Body, Cells, Joint, Skeleton
 from hidden.truth.change import Change
 from hidden.truth.draw import Draw
 from hidden.truth.effects import METER, airflow, bridge, covered, draught, heating, less
-from hidden.truth.films import (
-    across_gap,
-    bearing,
-    copper,
-    cylinder_still,
-    free_film,
-    joule,
-    magnet_eddy,
-    plate_still,
-    steel,
-)
 from hidden.truth.machine import Array, Film, Inputs, Loss
 from hidden.truth.profile import Rng, levels, steady, until
 from hidden.truth.readings import Logger
@@ -113,7 +100,7 @@ def joints(d: Draw) -> list[Joint]:
     ]
 
 
-def films(s: Skeleton, d: Draw) -> list[Film]:
+def surfaces(s: Skeleton, d: Draw) -> list[Film]:
     """Oil on end windings with flow, viscosity and what the rotor flings; on covers, rotor ends and the tank's wall."""
     still, spray, fling = d.factor("still", 0.15), d.factor("spray", 0.2), 0.35 * d.factor("fling", 0.25)
     wet, g = d.factor("wet covers", 0.2), 0.8e-3 / d.factor("gap", 0.15)
@@ -128,8 +115,8 @@ def films(s: Skeleton, d: Draw) -> list[Film]:
     def ends(T: Array, To: Array, u: Inputs) -> Array:
         return d.factor("wet rotor", 0.25) * (12.0 + 110.0 * flung(u) ** 0.8) * (29.0 / viscosity(To)) ** 0.1
 
-    drum = free_film(cylinder_still, 0.25, still, 0.8)
-    plate = free_film(plate_still, 0.22, still, 0.8)
+    drum = films.free_film(films.cylinder_still, 0.25, still, 0.8)
+    plate = films.free_film(films.plate_still, 0.22, still, 0.8)
 
     def washed(T: Array, To: Array, u: Inputs) -> float:
         return 85.0 * wet * (u["flow_l_min"] / 8.0) ** 0.2
@@ -137,7 +124,7 @@ def films(s: Skeleton, d: Draw) -> list[Film]:
     out = [
         Film("drum", s.cells("housing"), "T_ambient", np.full(8, 0.35 / 8), drum),
         Film("tank wall", s.cells("housing")[2:6], s.cells("tank"), np.full(4, 0.05 / 4), lambda T, To, u: 90.0 * wet),
-        across_gap(s, "magnets", "teeth", 0.09, 0.08, g),
+        films.across_gap(s, "magnets", "teeth", 0.09, 0.08, g),
     ]
     for end, cover, x, area in SIDES:
         oil, face = s.cells(f"oil.{end}"), s.cells(cover)
@@ -153,8 +140,8 @@ def films(s: Skeleton, d: Draw) -> list[Film]:
 def losses(s: Skeleton, d: Draw) -> list[Loss]:
     """Eddies grow from layer to layer and fall as copper warms; ends carry direct current's loss only."""
     R, ac = R20 * d.factor("copper", 0.04), 0.22 * d.factor("ac", 0.2)
-    iron = steel(d, RATED, 150.0, 160.0, 45.0)
-    eddy = magnet_eddy(70.0 * d.factor("magnet", 0.2), RATED)
+    iron = films.steel(d, RATED, 150.0, 160.0, 45.0)
+    eddy = films.magnet_eddy(70.0 * d.factor("magnet", 0.2), RATED)
     out = [
         Loss("teeth", s.cells("teeth"), np.full(6, 0.6 / 6), iron),
         Loss("yoke", s.cells("yoke"), np.full(6, 0.4 / 6), iron),
@@ -164,14 +151,14 @@ def losses(s: Skeleton, d: Draw) -> list[Loss]:
 
         def bars(T: Array, u: Inputs, k: float = ac * (m * (m - 1) / 3.0 + 4.0 / 45.0)) -> Array:
             more = k * (abs(u["speed_rpm"]) / 6000.0) ** 1.85 * (1.0 - 0.003 * (T - 60.0))
-            return copper(R, u["current_A"], T) + 3.0 * R * u["current_A"] ** 2 * more
+            return films.copper(R, u["current_A"], T) + 3.0 * R * u["current_A"] ** 2 * more
 
         out.append(Loss(f"layer.{m}", s.cells(f"layer.{m}"), np.full(6, 0.15 / 6), bars))
     for end, cover, x, _ in SIDES:
-        grease = bearing(30.0 * d.factor(f"grease-{end}", 0.25), RATED, 0.004)
+        grease = films.bearing(30.0 * d.factor(f"grease-{end}", 0.25), RATED, 0.004)
         share = (0.53 if end == "weld" else 0.47) * 0.4
         out += [
-            Loss(f"{end}", s.cells(end), np.full(5, share / 5), joule(R)),
+            Loss(f"{end}", s.cells(end), np.full(5, share / 5), films.joule(R)),
             Loss(f"grease.{end}", np.array([s.cell(cover, 0.999), s.cell("rotor", x)]), np.array([0.7, 0.3]), grease),
         ]
     return out
@@ -209,16 +196,7 @@ def passes(rng: Rng, at: Array) -> dict[str, Array]:
     return drive(current, speed, levels(at, rng, 6.5, 12.0, 14.0), levels(at, rng, 0.0, 25.0, 4.0))
 
 
-READ = {
-    "layer.1": 0.5,
-    "layer.4": 0.5,
-    "weld": 0.5,
-    "bend": 0.5,
-    "yoke": 0.5,
-    "housing": 0.5,
-    "tank": 0.5,
-    "front": 0.4,
-}
+READ = {**dict.fromkeys(("layer.1", "layer.4", "weld", "bend", "yoke", "housing", "tank"), 0.5), "front": 0.4}
 CALLED = {"layer.1": "layer 1", "layer.4": "layer 4", "weld": "weld side", "bend": "bend side", "yoke": "core"}
 CALLED |= {"front": "front cover", "tank": "spray.reservoir"}
 PARTS = {node: body for body, node in CALLED.items() if body != "tank"}
@@ -229,7 +207,7 @@ HAIRPIN = Archetype(
     name="hairpin",
     bodies=bodies,
     joints=joints,
-    terms=(films, oil, losses),
+    terms=(surfaces, oil, losses),
     plans=(
         Plan("direct current", "calibrate", 75.0, direct),
         Plan("load", "calibrate", 75.0, load),
@@ -272,16 +250,8 @@ HAIRPIN = Archetype(
         "film.spray": lambda seed: Change({"spray": 0.35}),
         "loss.iron": lambda seed: Change({"iron": 2.2, "eddy": 2.2}),
     },
-    tense={
-        "fit": 0.25,
-        "wall": 0.2,
-        "spray": 0.2,
-        "cooler": 0.15,
-        "iron": 0.15,
-        "ac": 0.2,
-        "wet rotor": 0.25,
-        "still": 0.15,
-    },
+    tense=("fit", "wall", "spray", "cooler", "iron", "ac", "wet rotor", "still"),
+    doubted={"wet rotor": 0.25},
     parts=PARTS,
     passing=(
         Hidden("draught@housing", lambda a: draught("housing", a), 60.0),

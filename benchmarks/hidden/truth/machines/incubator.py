@@ -1,7 +1,5 @@
 """The true incubator, 0.1 kW: a heated plate and a rack in a stirred, insulated chamber; nothing turns. 30 cells."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from hidden.truth import faults, foreign
@@ -162,7 +160,7 @@ INCUBATOR = Archetype(
         "link.foam": lambda seed: Change({"foam": 2.5}),
         "capacity.rack": lambda seed: Change({"capacity.rack": 1.9}),
     },
-    tense={"foam": 0.15, "stirred": 0.15, "still": 0.12, "hinge": 0.3, "feet": 0.25, "capacity.rack": 0.07},
+    tense=("foam", "stirred", "still", "hinge", "feet", "capacity.rack"),
     parts={"plate": "plate", "chamber": "air", "wall": "inner", "shell": "outer", "rack": "rack", "lid": "lid"},
     passing=(
         Hidden("lid open@air", lambda a: room_air("air", a), 12.0),

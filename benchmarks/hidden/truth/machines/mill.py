@@ -3,8 +3,6 @@
 Position 0 is the drive end, 1 the fan's. The shaft is one body from coupling to fan.
 """
 
-from __future__ import annotations
-
 import numpy as np
 
 from hidden.truth import faults, foreign
@@ -13,7 +11,7 @@ from hidden.truth.body import Body, Joint, Skeleton
 from hidden.truth.change import Change
 from hidden.truth.draw import Draw
 from hidden.truth.effects import METER, airflow, covered, draught, heating, joined, less, spinning, switched, warming
-from hidden.truth.films import ALPHA, across_gap, free_film, joule, plate_still, radiation
+from hidden.truth.films import ALPHA, across_gap, bearing, free_film, joule, plate_still, radiation
 from hidden.truth.machine import Array, Film, Inputs, Loss
 from hidden.truth.profile import Rng, levels, steady, until
 from hidden.truth.readings import Logger
@@ -138,11 +136,7 @@ def losses(s: Skeleton, d: Draw) -> list[Loss]:
         Loss("bars", s.cells("rotor"), np.full(6, 1 / 6), bars),
     ]
     for end, *_ in ENDS:
-        P = 55.0 * d.factor(f"grease-{end}", 0.25)
-
-        def grease(T: Array, u: Inputs, P: float = P) -> Array:
-            return P * (abs(u["speed_rpm"]) / RATED) ** 1.2 * np.exp(-0.007 * (T - 50.0))
-
+        grease = bearing(55.0 * d.factor(f"grease-{end}", 0.25), RATED, 0.007, 1.2, 50.0)
         out.append(Loss(f"coil.{end}", s.cells(f"coil.{end}"), np.full(4, 0.24 / 4), joule(R)))
         out.append(Loss(f"grease.{end}", s.cells(f"bearing.{end}"), np.full(2, 0.5), grease))
     return out
@@ -188,7 +182,8 @@ def shift(rng: Rng, at: Array) -> dict[str, Array]:
     return drive(levels(at, rng, 35.0, 100.0, 5.0), levels(at, rng, 500.0, 1600.0, 7.0), wind)
 
 
-ALL = ("slot", "coil.de", "yoke", "frame", "shield.de", "shield.nde", "bearing.de", "feet")
+READ = {"slot": 0.5, "coil.de": 0.5, "yoke": 0.6, "frame": 0.5, "shield.de": 0.4, "shield.nde": 0.4}
+READ |= {"bearing.de": 0.7, "feet": 0.4}
 
 
 MILL = Archetype(
@@ -203,19 +198,7 @@ MILL = Archetype(
         Plan("shift", "validate", 120.0, shift),
         Plan("late shift", "hold-out", 120.0, shift),
     ),
-    thermometers={
-        b: Spot(b, x)
-        for b, x in (
-            ("slot", 0.5),
-            ("coil.de", 0.5),
-            ("yoke", 0.6),
-            ("frame", 0.5),
-            ("shield.de", 0.4),
-            ("shield.nde", 0.4),
-            ("bearing.de", 0.7),
-            ("feet", 0.4),
-        )
-    },
+    thermometers={body: Spot(body, x) for body, x in READ.items()},
     baths={"bench": Spot("slab", 0.1)},
     missing=(
         Hidden("road wind@n11", lambda a: airflow("shield.de", a, 0.35), 30.0),
@@ -234,7 +217,7 @@ MILL = Archetype(
         "sensor.stem@n9": lambda seed: faults.stem("bearing.de", 0.25),
         "sensor.bias@n13": lambda seed: faults.bias("frame", 4.0),
         "sensor.swap@n11|n12": lambda seed: faults.swapped("shield.de", "shield.nde"),
-        "time.offset@stand": lambda seed: Change(in_test={"stand": faults.clock(ALL, 300.0)}),
+        "time.offset@stand": lambda seed: Change(in_test={"stand": faults.clock(READ, 300.0)}),
         "input.factor@current_A": lambda seed: Change(in_test={"stand": faults.factor("current_A", 1.15)}),
         "ambient.offset@ambient": lambda seed: faults.offset("T_ambient", 5.0),
         "frozen@n12": lambda seed: faults.frozen("shield.nde", 0.4),
@@ -251,16 +234,7 @@ MILL = Archetype(
         "fan": lambda seed: Change({"fan": 0.5}),
         "loss.iron": lambda seed: Change({"iron": 2.2, "eddy": 2.2}),
     },
-    tense={
-        "press": 0.25,
-        "wall": 0.2,
-        "fan": 0.12,
-        "iron": 0.15,
-        "cage": 0.15,
-        "legs": 0.25,
-        "seat-de": 0.25,
-        "still": 0.15,
-    },
+    tense=("press", "wall", "fan", "iron", "cage", "legs", "seat-de", "still"),
     parts={**NODES, "n7": "shaft"},
     passing=(
         Hidden("draught@n13", lambda a: draught("frame", a), 60.0),

@@ -1,7 +1,5 @@
 """The true servo motor, 0.1 kW, brushless, on an aluminium bracket: 27 cells, two thermometers."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from hidden.truth import faults, foreign
@@ -10,7 +8,7 @@ from hidden.truth.body import Body, Joint, Skeleton
 from hidden.truth.change import Change
 from hidden.truth.draw import Draw
 from hidden.truth.effects import METER, covered, draught, heating, joined, less, spinning, switched, warming
-from hidden.truth.films import ALPHA, across_gap, cylinder_still, free_film, joule, plate_still
+from hidden.truth.films import ALPHA, across_gap, bearing, cylinder_still, free_film, joule, plate_still
 from hidden.truth.machine import Array, Film, Loss
 from hidden.truth.profile import Rng, levels, steady, until
 from hidden.truth.readings import Logger
@@ -63,13 +61,10 @@ def losses(s: Skeleton, d: Draw) -> list[Loss]:
         f = u["speed_rpm"] / 3000.0
         return iron * (0.55 * f + 0.45 * f**2)
 
-    def bearings(T: Array, u) -> Array:
-        return grease * (u["speed_rpm"] / 3000.0) ** 1.3 * np.exp(-0.008 * (T - 40.0))
-
     return [
         Loss("winding", s.cells("copper"), np.full(5, 0.2), joule(R)),
         Loss("iron", s.cells("teeth"), np.full(5, 0.2), core),
-        Loss("grease", s.cells("rotor"), np.full(4, 0.25), bearings),
+        Loss("grease", s.cells("rotor"), np.full(4, 0.25), bearing(grease, 3000.0, 0.008, 1.3)),
     ]
 
 
@@ -131,7 +126,7 @@ SERVO = Archetype(
         "loss.Eisen": lambda seed: Change({"iron": 2.2}),
         "link.Luftspalt": lambda seed: Change({"bearings": 3.5}),
     },
-    tense={"enamel": 0.2, "shrink": 0.2, "flange": 0.25, "still": 0.12, "iron": 0.2, "grease": 0.3},
+    tense=("enamel", "shrink", "flange", "still", "iron", "grease"),
     parts={"Wicklung": "copper", "Gehaeuse": "case", "Rotor": "rotor"},
     passing=(
         Hidden("draught@case", lambda a: draught("case", a), 1.5),

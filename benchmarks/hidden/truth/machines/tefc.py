@@ -1,27 +1,13 @@
 """The true fan-cooled induction motor, 7.5 kW, 132 frame: 103 cells. Position 0 is the drive end, 1 the fan's."""
 
-from __future__ import annotations
-
 import numpy as np
 
-from hidden.truth import faults, foreign
+from hidden.truth import faults, films, foreign
 from hidden.truth.archetype import Archetype, Hidden, Plan, Spot
 from hidden.truth.body import Body, Joint, Skeleton
 from hidden.truth.change import Change
 from hidden.truth.draw import Draw
 from hidden.truth.effects import METER, airflow, bridge, covered, draught, fading, heating, less, spinning, stirred_gap
-from hidden.truth.films import (
-    across_gap,
-    bearing,
-    cylinder_still,
-    free_film,
-    joule,
-    mixed,
-    plate_still,
-    radiation,
-    steel,
-    stirred,
-)
 from hidden.truth.machine import Array, Film, Loss
 from hidden.truth.profile import Rng, levels, steady, until
 
@@ -89,13 +75,15 @@ def outside(s: Skeleton, d: Draw) -> list[Film]:
     def fins(T: Array, Ta: Array, u) -> Array:
         blown = fan * decay * (u["speed_rpm"] / RATED) ** power
         clean = 1.0 - u.get("fade.housing", 0.0)
-        return clean * (mixed(blown, still * cylinder_still(T, Ta, 0.26)) + 0.8 * radiation(T, Ta, emissivity))
+        return clean * (
+            films.mixed(blown, still * films.cylinder_still(T, Ta, 0.26)) + 0.8 * films.radiation(T, Ta, emissivity)
+        )
 
-    shield = free_film(plate_still, 0.25, still, emissivity)
+    shield = films.free_film(films.plate_still, 0.25, still, emissivity)
     cowl = 35.0 * d.factor("cowl", 0.2)
 
     def hooded(T: Array, Ta: Array, u) -> Array:
-        return mixed(cowl * (u["speed_rpm"] / RATED) ** power, 0.6 * plate_still(T, Ta, 0.25))
+        return films.mixed(cowl * (u["speed_rpm"] / RATED) ** power, 0.6 * films.plate_still(T, Ta, 0.25))
 
     ring = 0.06 * np.arange(6, 0, -1) / 21.0 * d.factor("face", 0.1)
     return [
@@ -112,10 +100,7 @@ def inside(s: Skeleton, d: Draw) -> list[Film]:
     for end, x in ENDS:
         k2 = d.between(f"stir.{end}", 0.2, 0.4)
         k1 = 15.0 * d.factor(f"endspace.{end}", 0.2)
-
-        def h(T: Array, Ta: Array, u, k1: float = k1, k2: float = k2) -> float:
-            return stirred(u["speed_rpm"], 0.06, k1, k2)
-
+        h = films.stirred(0.06, k1, k2)
         air = s.cells(f"air.{end}")
         walls = (
             (s.cells(f"winding.{end}"), 0.08),
@@ -126,22 +111,22 @@ def inside(s: Skeleton, d: Draw) -> list[Film]:
         out += [Film(f"end.{end}.{k}", w, air, np.full(w.size, A / w.size), h) for k, (w, A) in enumerate(walls)]
     g = 0.5e-3 / d.factor("gap", 0.15)
 
-    return [*out, across_gap(s, "rotor", "teeth", 0.068, 0.06, g)]
+    return [*out, films.across_gap(s, "rotor", "teeth", 0.068, 0.06, g)]
 
 
 def losses(s: Skeleton, d: Draw) -> list[Loss]:
     R1, R2 = 0.5 * d.factor("copper", 0.04), 0.3 * d.factor("cage", 0.12)
-    iron = steel(d, RATED, 80.0, 50.0, 20.0)
+    iron = films.steel(d, RATED, 80.0, 50.0, 20.0)
     out = [
-        Loss("slot", s.cells("slot"), np.full(11, 0.45 / 11), joule(R1)),
+        Loss("slot", s.cells("slot"), np.full(11, 0.45 / 11), films.joule(R1)),
         Loss("teeth", s.cells("teeth"), np.full(11, 0.55 / 11), iron),
         Loss("yoke", s.cells("yoke"), np.full(11, 0.45 / 11), iron),
-        Loss("cage", s.cells("rotor"), np.full(11, 1 / 11), joule(R2, "rotor_A")),
+        Loss("cage", s.cells("rotor"), np.full(11, 1 / 11), films.joule(R2, "rotor_A")),
     ]
     for end, _ in ENDS:
         P = 14.0 * d.factor(f"bearing.{end}", 0.25)
-        out.append(Loss(f"end.{end}", s.cells(f"winding.{end}"), np.full(5, 0.275 / 5), joule(R1)))
-        out.append(Loss(f"grease.{end}", s.cells(f"bearing.{end}"), np.full(2, 0.5), bearing(P, RATED)))
+        out.append(Loss(f"end.{end}", s.cells(f"winding.{end}"), np.full(5, 0.275 / 5), films.joule(R1)))
+        out.append(Loss(f"grease.{end}", s.cells(f"bearing.{end}"), np.full(2, 0.5), films.bearing(P, RATED)))
     return out
 
 
@@ -231,18 +216,8 @@ TEFC = Archetype(
         "loss.cage": lambda seed: Change({"cage": 2.0}),
         "link.fins-fan": lambda seed: Change({"fan": 0.45}),
     },
-    tense={
-        "fit": 0.25,
-        "liner": 0.2,
-        "fan": 0.15,
-        "iron": 0.15,
-        "seat-de": 0.25,
-        "feet": 0.25,
-        "capacity.housing": 0.1,
-        "cage": 0.12,
-        "spigot-de": 0.25,
-        "still": 0.15,
-    },
+    tense=("fit", "liner", "fan", "iron", "seat-de", "feet", "capacity.housing", "cage", "spigot-de", "still"),
+    doubted={"capacity.housing": 0.1},
     parts=PARTS,
     passing=(
         Hidden("convection.constant@housing", lambda a: draught("housing", a), 60.0),

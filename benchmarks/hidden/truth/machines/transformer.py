@@ -3,8 +3,6 @@
 62 cells. Position 0 is the bottom; the coils of both outer limbs are one body, as all phases carry the same current.
 """
 
-from __future__ import annotations
-
 import numpy as np
 
 from hidden.truth import faults, foreign
@@ -205,7 +203,7 @@ TRANSFORMER = Archetype(
         "chimney": lambda seed: Change({"chimney": 0.45}),
         "loss.iron": lambda seed: Change({"iron": 2.0}),
     },
-    tense={"tie": 0.25, "chimney": 0.15, "still": 0.12, "blown": 0.15, "iron": 0.12, "corners": 0.2, "slit": 0.25},
+    tense=("tie", "chimney", "still", "blown", "iron", "corners", "slit"),
     parts={**{node: body for body, node in CALLED.items()}, "yoke": "yoke", "clamp": "clamp", "limbs": "limb.outer"},
     passing=(
         Hidden("draught@hv.outer", lambda a: draught("hv.outer", a), 20.0),
