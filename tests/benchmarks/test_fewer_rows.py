@@ -1,6 +1,5 @@
 """A verdict does not hang on the sample step: whole records and those of slower loggers say the same."""
 
-from dataclasses import replace
 from functools import cache
 
 import numpy as np
@@ -8,33 +7,16 @@ import pytest
 from hidden.cases import edits_of, plan, records_of
 from hidden.user import case_of
 from steadiness import HABITS, changed, markdown, thinned, thinned_case
-from two_bodies import bench, two_bodies
+from two_bodies import bench, three_tests
 
-from lumped.integration.simulate import Record, simulate
-from measured.case import Case, Channel, Model, Test
 from validation import diagnose
-from validation.effects import effect
 
 SAME = 0.1  # of a probability: the halves of a whole record differ by as much
 
 
-def restless(*hidden, step_s=20.0, level_s=160.0):
-    """Two bodies in three tests whose load has another level every `level_s`: of two hundred seconds no row shows it.
-
-    hidden : an effect and its size
-    """
-    net, rng = two_bodies(), np.random.default_rng(0)
-    truth = effect(hidden[0]).extend(net) if hidden else net
-    values = {truth.parameters[-1].name: hidden[1]} if hidden else {}
-    time, rows, tests = np.arange(0.0, 6001.0, step_s), [net.places[p].mean for p in ("body", "core")], []
-    for name in ("noon", "dawn", "dusk"):
-        load = rng.uniform(0.2, 1.0, 100)[(time / level_s).astype(int)]
-        test = Test(name, "calibrate", time, {"load": load}, {"ambient": np.full_like(time, 20.0)}, (), 20.0)
-        y = simulate(truth, Record(time, test.signals, test.boundaries, 20.0), values, rows).y
-        y = y + 0.05 * rng.standard_normal(y.shape)
-        channels = [Channel(p, p, r, y[:, i], 0.3) for i, (p, r) in enumerate(zip(("body", "core"), rows))]
-        tests.append(replace(test, channels=tuple(channels)))
-    return Case("restless", Model(net), tuple(tests))
+def restless(effect=None, size=0.0):
+    """Two bodies whose load has another level every 160 s: of two hundred seconds no row shows it."""
+    return three_tests("restless", effect, size, 0, np.arange(0.0, 6001.0, 20.0), 160.0, 100)
 
 
 CASES = {"nothing": restless, "loss": lambda: restless("loss.constant@body", 30.0), "lid": bench}

@@ -60,14 +60,9 @@ def test_in_one_test_alone_only_its_rows_count():
 
 def test_a_condition_moves_its_test_alone_and_not_before_it_begins():
     names = [p.name for p in SHORT.plans]
-    still, lasting, passing = (
-        measured(SHORT, 5, c)
-        for c in (
-            NOTHING,
-            only_in(names[1], heating("case", 5.0)),
-            for_a_while(names[1], heating("case", 5.0), 600.0, 900.0),
-        )
-    )
+    hot = heating("case", 5.0)
+    changes = NOTHING, only_in(names[1], hot), for_a_while(names[1], hot, 600.0, 900.0)
+    still, lasting, passing = (measured(SHORT, 5, c) for c in changes)
     for changed in (lasting, passing):
         np.testing.assert_array_equal(changed[0].readings["case"], still[0].readings["case"])
     moved = [c[1].readings["case"] - still[1].readings["case"] for c in (lasting, passing)]

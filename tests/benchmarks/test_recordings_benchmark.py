@@ -33,21 +33,8 @@ def test_the_table_holds_the_last_step_against_the_best_yardstick():
     assert np.isnan(none.ratios).all()
     lines = bench.recordings_table([good, none]).splitlines()
     cells = [c.strip() for c in lines[2].replace("\\|", "/").strip("|").split("|")]
-    assert cells == [
-        "good",
-        "4 (1)",
-        "12.00",
-        "3.00",
-        "2.00",
-        "",
-        "",
-        "4.00",
-        "**2.20**",
-        "**2.00**",
-        "1.10 / 1.00",
-        "wind@a/b",
-        "61",
-    ]
+    assert cells[:9] == ["good", "4 (1)", "12.00", "3.00", "2.00", "", "", "4.00", "**2.20**"]
+    assert cells[9:] == ["**2.00**", "1.10 / 1.00", "wind@a/b", "61"]
     assert lines[-1] == "none: no column is a temperature"
     assert "median 1.10 / 1.00, worst 1.10 / 1.00 of 1" in lines[-3]
 

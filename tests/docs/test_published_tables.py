@@ -9,20 +9,10 @@ from fem.matrices.winding import homogenised
 from fem.solvers.snapshots import LITTLE
 from geom import library, load_machine
 from geom.description.materials import winding_conductivity
-from lumped.build.mesh_choice import (
-    BEGIN,
-    CHEAP,
-    LARGEST_SHARE,
-    MOST_QUADRATIC,
-    MOST_SOLVED,
-    MOST_UNKNOWNS,
-    ROOM,
-    SAFETY,
-    SHARE,
-    STRAIGHT,
-)
+from lumped.build import mesh_choice as choice
 from lumped.build.network_size import CONDENSED, FIRST_AXIAL, accurate_network
 from lumped.build.pipeline import CASE, FEW
+from scripts.doubt_table import doubt_table
 from scripts.published import FRONT, HUST, ROOT, between, demo_table, demo_time
 from thermoscope.console.options import ACCURACY
 
@@ -142,18 +132,24 @@ def test_the_page_says_how_meshes_are_chosen():
     mesh = words[words.index("## The mesh") : words.index("<!-- builds:begin -->")]
     said = (
         f"layers of {1e3 * FIRST_AXIAL * signature(accurate_network).parameters['size_m'].default:g} mm",
-        f"three quarters of the {MOST_UNKNOWNS:,} unknowns it is made coarser across slots and bars",
+        f"three quarters of the {choice.MOST_UNKNOWNS:,} unknowns it is made coarser across slots and bars",
         f"The default is {ACCURACY:g} %",
-        f"the mesh has {SHARE * ACCURACY:g} ({LARGEST_SHARE * ACCURACY:g} where it is large)",
+        f"the mesh has {choice.SHARE * ACCURACY:g} ({choice.LARGEST_SHARE * ACCURACY:g} where it is large)",
         "a tenth of the wish",
-        f"Roache's factor of {SAFETY:g}",
-        f"six tenths of the wish are kept, or three quarters on a mesh beyond {CHEAP:,} unknowns",
-        f"No mesh of more than {MOST_UNKNOWNS:,} unknowns is condensed",
-        f"more than {MOST_SOLVED:,} is solved, but the wholly quadratic one up to {MOST_QUADRATIC:,}",
+        f"Roache's factor of {choice.SAFETY:g}",
+        f"six tenths of the wish are kept, or three quarters on a mesh beyond {choice.CHEAP:,} unknowns",
+        f"No mesh of more than {choice.MOST_UNKNOWNS:,} unknowns is condensed",
+        f"more than {choice.MOST_SOLVED:,} is solved, but the wholly quadratic one up to {choice.MOST_QUADRATIC:,}",
         f"no more than {CONDENSED:g} %",
     )
     assert [x for x in said if x not in mesh] == []
-    assert (SHARE, LARGEST_SHARE, ROOM, BEGIN, STRAIGHT) == (0.6, 0.75, 0.75, 0.5, 0.1), "tenths, quarters, half"
+    assert (choice.SHARE, choice.LARGEST_SHARE, choice.ROOM, choice.BEGIN, choice.STRAIGHT) == (
+        0.6,
+        0.75,
+        0.75,
+        0.5,
+        0.1,
+    ), "tenths, quarters, half"
     unread = re.sub("|".join(map(re.escape, said)), "", mesh)
     assert re.findall(r"\d[\d,.]* (?:K|GB|s|mm|unknowns)\b", unread) == [], "numbers that no test reads"
 
@@ -162,11 +158,11 @@ def test_builds_end_as_the_page_says():
     """Whatever the mesh leaves says the exit code, and no mesh is larger than what is condensed."""
     builds = table_of("builds")
     assert len(builds) >= 8
-    limit = LARGEST_SHARE * ACCURACY
+    limit = choice.LARGEST_SHARE * ACCURACY
     assert f"Where the mesh leaves more than {limit:g} %, the exit code is 1." in " ".join(CONDENSATION.split())
     assert "Three minutes and 4 GB (10^9 bytes) are the most" in CONDENSATION
     for machine, unknowns, leaves, *_, seconds, memory, code in builds:
-        assert int(unknowns.replace(",", "")) <= MOST_UNKNOWNS, machine
+        assert int(unknowns.replace(",", "")) <= choice.MOST_UNKNOWNS, machine
         assert float(seconds) <= 180.0, machine
         assert float(memory) <= 4.0, machine
         assert (code == "0") == (float(leaves) <= limit), machine
@@ -188,14 +184,8 @@ def test_the_page_says_what_a_flat_winding_conducts():
 def test_a_cases_network_is_within_what_is_wanted():
     """Hottest points that a loss heats within 2 %, any other within 5 %: steady, and after a step of loss."""
     found = cells("case-network")
-    assert {
-        "nominal",
-        "films x0.3",
-        "films x10",
-        "contacts x0.2",
-        "contacts x5",
-        "step of loss, nominal",
-    } <= found.keys()
+    points = {"nominal", "films x0.3", "films x10", "contacts x0.2", "contacts x5", "step of loss, nominal"}
+    assert points <= found.keys()
     assert "Wanted are 2 / 5" in CONDENSATION
     for point, machines in found.items():
         assert max(heated for heated, _ in machines) <= 2.0, point
@@ -222,3 +212,9 @@ def test_the_small_network_is_compared_at_the_same_points():
 
 def test_no_table_of_it_is_empty():
     assert re.findall(r"<!-- (\S+):begin -->\n<!--", CONDENSATION) == []
+
+
+def test_table_of_doubt_is_current(root):
+    """python -m scripts.doubt_table"""
+    page = (root / "docs" / "diagnosis.md").read_text(encoding="utf-8")
+    assert page.split("<!-- doubt:begin -->\n")[1].split("\n<!-- doubt:end -->")[0] == doubt_table()

@@ -1,5 +1,6 @@
 """Files that a stranger looks for agree with the project they speak of."""
 
+import re
 import tomllib
 
 import pytest
@@ -30,3 +31,9 @@ def test_hosted_tests_run_every_version_that_is_promised(root, project):
 def test_what_a_commit_runs_is_there(root, command):
     assert command in (root / ".pre-commit-config.yaml").read_text(encoding="utf-8")
     assert command.startswith(".venv") or (root / command).is_file()
+
+
+def test_the_tests_that_the_page_of_security_names_are_there(root):
+    names = re.findall(r"test_\w+\.py", (root / "SECURITY.md").read_text(encoding="utf-8"))
+    assert len(names) >= 5
+    assert [name for name in names if not list((root / "tests").rglob(name))] == []

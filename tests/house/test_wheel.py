@@ -39,10 +39,6 @@ def started(home, program, *arguments):
     return subprocess.run(command, cwd=home, env=environment, capture_output=True, text=True)
 
 
-def run(home, *arguments):
-    return started(home, "thermoscope", *arguments)
-
-
 # Every example that needs no extra, held against what it is to give; more than all a user may import is in them.
 EXAMPLES = """
 import json, runpy, sys
@@ -98,12 +94,12 @@ def test_examples_run_from_it(root, elsewhere):
 
 
 def test_command_answers(elsewhere):
-    done = run(elsewhere, "--help")
+    done = started(elsewhere, "thermoscope", "--help")
     assert done.returncode == 0, done.stderr
     assert "explain" in done.stdout
 
 
 def test_shipped_case_runs_without_the_checkout(elsewhere):
-    done = run(elsewhere, "test", "compare", "tclab", "--no-bands", "--json", "-")
+    done = started(elsewhere, "thermoscope", "test", "compare", "tclab", "--no-bands", "--json", "-")
     assert done.returncode in (0, 1), done.stderr
     assert json.loads(done.stdout)["case"] == "tclab"

@@ -23,30 +23,20 @@ def machine():
     base = replace(base, states=(*base.states, "air.right"), C=np.append(base.C, 60.0), boundaries=boundaries)
     base = replace(base, links=tuple(moved(x, n) for x in base.links), capacity_group=base.states)
     flange = np.array([base.column("flange.right")])
-    faces = {
-        "flange.right.outer": Place(
-            "flange.right.outer", "surface", "flange.right", flange, 0.2 * np.eye(1), np.array([0.2]), 0.2, "ambient"
-        ),
-        "flange.right.inner": Place(
-            "flange.right.inner", "surface", "flange.right", flange, 0.1 * np.eye(1), np.array([0.1]), 0.1, "air.right"
-        ),
-        "air.right": Place("air.right", "fluid", "air.right", np.array([n]), np.eye(1), np.ones(1)),
-    }
+
+    def face(side, area, beside):
+        name = f"flange.right.{side}"
+        at = (flange, area * np.eye(1), np.array([area]), area, beside)
+        return {name: Place(name, "surface", "flange.right", *at)}
+
+    faces = face("outer", 0.2, "ambient") | face("inner", 0.1, "air.right")
+    faces["air.right"] = Place("air.right", "fluid", "air.right", np.array([n]), np.eye(1), np.ones(1))
     base = replace(base, places={**base.places, **faces})
     coolant = base.surface_link("film:housing:jacket", "film", "housing", "coolant", Fixed(20.0))
     inner = base.surface_link("film:flange.right.inner", "film", "flange.right.inner", "air.right", Fixed(15.0))
     air = Row(np.array([n]), np.ones(1)), row(base.column("ambient"))
-    cols = np.array([n, base.column("ambient")])
-    stream = Link(
-        "stream:fan",
-        "stream",
-        ("ambient", "air.right"),
-        np.array([n, n]),
-        cols,
-        np.array([1.0, -1.0]),
-        Fixed(30.0),
-        *air,
-    )
+    at = np.array([n, n]), np.array([n, base.column("ambient")]), np.array([1.0, -1.0])
+    stream = Link("stream:fan", "stream", ("ambient", "air.right"), *at, Fixed(30.0), *air)
     parts = ("winding.field", "yoke")
     wet = [base.surface_link(f"film:{part}:spray", "film", part, "coolant", spray()) for part in parts]
     return base.extended(links=[coolant, inner, stream, *(replace(x, hot=x.cold, cold=NOTHING) for x in wet)])

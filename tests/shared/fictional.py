@@ -16,27 +16,19 @@ POSITIONS = {
     "yoke": (0.0, 0.17, 0.30),
     "housing": (0.0, 0.20, 0.40),
 }
+
+
+def step(number, action, effect, words, stand, road):
+    """A revision and what it did to the error of two tests (K), before and after."""
+    tests = [("stand-1", "calibrate", stand), ("road-2", "hold-out", road)]
+    fell = [{"name": n, "role": r, "rmse_K": dict(zip(("before", "after"), K))} for n, r, K in tests]
+    return {"number": number, "action": action, "effect": effect, "words": words, "tests": fell}
+
+
+WIND = "convection@flange.right", "forced convection by vehicle wind at flange.right"
 HISTORY = [
-    {
-        "number": 1,
-        "action": "calibrate",
-        "effect": None,
-        "words": "calibrate",
-        "tests": [
-            {"name": "stand-1", "role": "calibrate", "rmse_K": {"before": 3.1, "after": 0.71}},
-            {"name": "road-2", "role": "hold-out", "rmse_K": {"before": 6.4, "after": 4.85}},
-        ],
-    },
-    {
-        "number": 2,
-        "action": "add",
-        "effect": "convection@flange.right",
-        "words": "forced convection by vehicle wind at flange.right",
-        "tests": [
-            {"name": "stand-1", "role": "calibrate", "rmse_K": {"before": 0.71, "after": 0.68}},
-            {"name": "road-2", "role": "hold-out", "rmse_K": {"before": 4.85, "after": 0.93}},
-        ],
-    },
+    step(1, "calibrate", None, "calibrate", (3.1, 0.71), (6.4, 4.85)),
+    step(2, "add", *WIND, (0.71, 0.68), (4.85, 0.93)),
 ]
 
 
@@ -51,14 +43,8 @@ def comparison(wrong_K: float = 6.2, before: bool = False) -> Comparison:
     truth = {**model, "flange.right": curve(72 - wrong_K, 850)}
     row = Row(np.array([0]), np.array([1.0]))
     channels = tuple(Channel(p, p, row, truth[p] + rng.normal(0, 0.3, len(TIME))) for p in PLACES)
-    test = Test(
-        "road-2",
-        "hold-out",
-        TIME,
-        {"current_A": np.full(len(TIME), 250.0)},
-        {"ambient": np.full(len(TIME), 20.0)},
-        channels,
-    )
+    inputs, air = {"current_A": np.full(len(TIME), 250.0)}, {"ambient": np.full(len(TIME), 20.0)}
+    test = Test("road-2", "hold-out", TIME, inputs, air, channels)
     return Comparison(
         test, model, dict.fromkeys(PLACES, LIMIT_K), {p: y + 4.0 for p, y in model.items()} if before else None
     )
@@ -81,45 +67,25 @@ def candidate(effect: str, score: float, decision: str) -> dict:
 def candidates() -> list[dict]:
     rng = np.random.default_rng(1)
     noise = [candidate(f"effect{i}@yoke", float(s), "no") for i, s in enumerate(2.2 * rng.normal(size=17))]
-    return [
-        candidate("convection@flange.right", 31.4, "named"),
-        candidate("radiation@flange.right", 14.0, "group"),
-        *noise,
-    ]
+    group = candidate("radiation@flange.right", 14.0, "group")
+    return [candidate("convection@flange.right", 31.4, "named"), group, *noise]
 
 
 def documents() -> tuple[dict, dict]:
     """(compare, diagnose) documents."""
-    channels = [
-        {
-            "channel": p,
-            "place": p,
-            "n": 121,
-            "seconds": 7_200.0,
-            "rmse_K": 5.07 if p == "flange.right" else 0.31,
-            "bias_K": -4.21,
-            "max_abs_K": 7.13,
-            "sigma_K": 0.5,
-            "percent_of_rise": 9.14,
-            "verdict": "over" if p == "flange.right" else "within",
-        }
-        for p in PLACES
-    ]
+    common = {"n": 121, "seconds": 7_200.0, "bias_K": -4.21, "max_abs_K": 7.13, "sigma_K": 0.5, "percent_of_rise": 9.14}
+    wrong = {"rmse_K": 5.07, "verdict": "over"}
+    right = {"rmse_K": 0.31, "verdict": "within"}
+    channels = [{"channel": p, "place": p, **common, **(wrong if p == "flange.right" else right)} for p in PLACES]
     test = {"name": "road-2", "role": "hold-out", "rmse_K": 4.85, "channels": channels}
-    compare = {
-        "case": "road-test",
-        "model": {"revision": 2, "effects": []},
-        "tests": [test],
-        "rmse_K": 4.85,
-        "floor_K": 0.62,
-    }
+    compare = {"case": "road-test", "model": {"revision": 2, "effects": []}, "tests": [test], "rmse_K": 4.85}
+    compare |= {"floor_K": 0.62}
+    blind = {"effect": "contact@yoke", "words": "worse contact at yoke", "smallest_detectable": 123.0, "unit": "W/m2/K"}
     diagnose = {
         "verdict": "named",
         "candidates": candidates(),
         "where": [{"place": "flange.right", "evidence_nats": 41.0}],
-        "cannot_see": [
-            {"effect": "contact@yoke", "words": "worse contact at yoke", "smallest_detectable": 123.0, "unit": "W/m2/K"}
-        ],
+        "cannot_see": [blind],
         "next_tests": [{"test": "blower on", "separates": ["radiation@flange.right"], "predicted_gain": 44.0}],
     }
     return compare, diagnose

@@ -12,50 +12,20 @@ STEEL = {"__class__": "Material", "name": "M400-50A"}
 
 def pyleecan(**changes):
     """An interior-magnet machine: 12 slots, 4 poles, one flat magnet in its hole for each.  changes : by dotted path"""
+    conductor = {"__class__": "CondType12", "Wwire": 0.001, "Nwppc": 1, "cond_mat": COPPER}
+    winding = {"__class__": "Winding", "p": 2, "qs": 3, "Nlayer": 2, "Ntcoil": 20, "Npcp": 1, "coil_pitch": 3}
+    winding |= {"Lewout": 0.003, "conductor": conductor}
+    slot = {"__class__": "SlotW22", "Zs": 12, "H0": 0.001, "H2": 0.012, "W0": 0.1, "W2": 0.3}
+    stator = {"__class__": "LamSlotWind", "Rint": 0.03, "Rext": 0.055, "L1": 0.04, "Kf1": 0.95, "is_internal": False}
+    hole = {"__class__": "HoleM63", "Zh": 4, "H0": 0.003, "H1": 0.002, "W0": 0.02, "top_flat": True}
+    hole |= {"magnet_0": {"__class__": "Magnet", "Lmag": 0.04}}
+    rotor = {"__class__": "LamHole", "Rint": 0.01, "Rext": 0.0295, "L1": 0.04, "is_internal": True, "hole": [hole]}
     machine = {
         "__class__": "MachineIPMSM",
         "__version__": "pyleecan_1.5.0",
         "name": "small",
-        "stator": {
-            "__class__": "LamSlotWind",
-            "Rint": 0.03,
-            "Rext": 0.055,
-            "L1": 0.04,
-            "Kf1": 0.95,
-            "is_internal": False,
-            "slot": {"__class__": "SlotW22", "Zs": 12, "H0": 0.001, "H2": 0.012, "W0": 0.1, "W2": 0.3},
-            "winding": {
-                "__class__": "Winding",
-                "p": 2,
-                "qs": 3,
-                "Nlayer": 2,
-                "Ntcoil": 20,
-                "Npcp": 1,
-                "coil_pitch": 3,
-                "Lewout": 0.003,
-                "conductor": {"__class__": "CondType12", "Wwire": 0.001, "Nwppc": 1, "cond_mat": COPPER},
-            },
-            "mat_type": STEEL,
-        },
-        "rotor": {
-            "__class__": "LamHole",
-            "Rint": 0.01,
-            "Rext": 0.0295,
-            "L1": 0.04,
-            "is_internal": True,
-            "hole": [
-                {
-                    "__class__": "HoleM63",
-                    "Zh": 4,
-                    "H0": 0.003,
-                    "H1": 0.002,
-                    "W0": 0.02,
-                    "top_flat": True,
-                    "magnet_0": {"__class__": "Magnet", "Lmag": 0.04},
-                }
-            ],
-            "mat_type": STEEL,
-        },
+        "stator": {**stator, "slot": slot, "winding": winding, "mat_type": STEEL},
+        "rotor": {**rotor, "mat_type": STEEL},
         "shaft": {"__class__": "Shaft", "Drsh": 0.02},
     }
     for path, value in changes.items():
@@ -169,15 +139,7 @@ BORE, OUTER, SLOTS, POLES = 40.0, 70.0, 24, 4  # mm
 OPENING, TIP, WIDE, DEEP = 3.0, 41.0, 6.0, 60.0  # width, to this radius; width, to this radius
 SURFACE, SHAFT = 39.2, 12.0
 MAGNET = (27.0, 31.0, 20.0)  # from x to x, width
-LAYERS = {
-    "stator": "stator",
-    "winding": "winding",
-    "rotor": "rotor",
-    "magnet": "magnet",
-    "shaft": "shaft",
-    "housing": "housing",
-    "slot": "slot",
-}
+LAYERS = {name: name for name in ("stator", "winding", "rotor", "magnet", "shaft", "housing", "slot")}
 
 
 def on_circle(radius, y):

@@ -12,22 +12,12 @@ P, G, C, SIGMA = 50.0, 2.0, 4000.0, 0.3
 def one_node(*parameters):
     """One mass, one film to ambient, one constant loss."""
     row, air = Row(np.array([0]), np.ones(1)), Row(np.array([1]), np.ones(1))
-    film = Link(
-        "film",
-        "film",
-        ("body", "ambient"),
-        np.array([0, 0]),
-        np.array([0, 1]),
-        np.array([1.0, -1.0]),
-        Fixed(G),
-        row,
-        air,
-    )
+    at, ends = (np.array([0, 0]), np.array([0, 1]), np.array([1.0, -1.0])), ("body", "ambient")
+    film = Link("film", "film", ends, *at, Fixed(G), row, air)
     loss = Source("loss", "measured", "body", np.array([0]), np.ones(1), Fixed(P), row)
     place = Place("body", "node", "body", np.array([0]), np.eye(1), np.ones(1))
-    return Network(
-        "one", ("body",), np.array([C]), ("ambient",), (film,), (loss,), {"body": place}, ("body",), parameters
-    )
+    mass, places = np.array([C]), {"body": place}
+    return Network("one", ("body",), mass, ("ambient",), (film,), (loss,), places, ("body",), parameters)
 
 
 def measured(name="warm", role="calibrate", frees=(), shift=0.0, loss=1.0, samples=200):

@@ -13,20 +13,10 @@ from lumped.model.network import Link, Network, Parameter, Place, Row, Source
 from lumped.transfer.laws import Constant, Fixed, InputPower, Linear, Power
 from measured.case import Case, Channel, Model, Test
 
-NODES = {  # heat capacity J/K
-    "shaft": 14e3,
-    "rotor": 70e3,
-    "winding.armature": 25e3,
-    "commutator": 10e3,
-    "yoke": 90e3,
-    "poles": 60e3,
-    "winding.field": 30e3,
-    "housing": 50e3,
-    "flange.left": 16e3,
-    "flange.right": 16e3,
-    "bearing.left": 3e3,
-    "bearing.right": 3e3,
-}
+# J/K
+NODES = {"shaft": 14e3, "rotor": 70e3, "winding.armature": 25e3, "commutator": 10e3, "yoke": 90e3, "poles": 60e3}
+NODES |= {"winding.field": 30e3, "housing": 50e3, "flange.left": 16e3, "flange.right": 16e3}
+NODES |= {"bearing.left": 3e3, "bearing.right": 3e3}
 NAMES = tuple(NODES)
 JOINTS = {  # W/K
     ("rotor", "shaft"): 25.0,
@@ -45,13 +35,8 @@ JOINTS = {  # W/K
     ("bearing.right", "shaft"): 5.0,
 }
 FILMS = {"housing": 14.0, "flange.left": 2.0, "flange.right": 2.0}  # W/K at 40 K, natural
-FAN = {
-    "rotor": 9.0,
-    "winding.field": 7.0,
-    "poles": 5.0,
-    "flange.left": 3.0,
-    "commutator": 3.0,
-}  # W/K at the stated flow
+# W/K at the stated flow
+FAN = {"rotor": 9.0, "winding.field": 7.0, "poles": 5.0, "flange.left": 3.0, "commutator": 3.0}
 COPPER = {"winding.armature": 0.028, "winding.field": 0.022}  # ohm at 20 degC
 IRON = {"rotor": 60.0, "poles": 20.0}  # W at 1000 rpm
 FRICTION = {"bearing.left": 8.0, "bearing.right": 8.0}  # W at 1000 rpm
@@ -91,17 +76,8 @@ def network(feedback=True):
     places = {a: Place(a, "node", a, np.array([i]), np.eye(1), np.ones(1)) for i, a in enumerate(NAMES)}
     for a in FILMS:
         places[a] = Place(a, "node", a, np.array([NAMES.index(a)]), np.eye(1), np.ones(1), fluid="ambient")
-    return Network(
-        "playground",
-        NAMES,
-        np.array(list(NODES.values())),
-        ("ambient",),
-        tuple(links),
-        tuple(sources),
-        places,
-        NAMES,
-        parameters(links, sources),
-    )
+    C, free = np.array(list(NODES.values())), parameters(links, sources)
+    return Network("playground", NAMES, C, ("ambient",), tuple(links), tuple(sources), places, NAMES, free)
 
 
 def parameters(links, sources):
@@ -223,16 +199,15 @@ def steps(time, rng, low, high, every):
     return levels[(time / every).astype(int)]
 
 
+def driven(current, vehicle, speed, fan):
+    return {"current_A": current, "vehicle_speed_mps": vehicle, "speed_rpm": speed, "fan_flow_m3h": fan}
+
+
 def stand(current, speed):
     def plan(time, rng):
-        still = np.zeros_like(time)
         fan = np.where(time > 2400.0, 90.0, 138.0)
-        return {
-            "current_A": steps(time, rng, 0.6 * current, current, 900.0),
-            "vehicle_speed_mps": still,
-            "speed_rpm": steps(time, rng, 0.3 * speed, speed, 1200.0),
-            "fan_flow_m3h": fan,
-        }
+        amps = steps(time, rng, 0.6 * current, current, 900.0)
+        return driven(amps, np.zeros_like(time), steps(time, rng, 0.3 * speed, speed, 1200.0), fan)
 
     return plan
 
@@ -240,13 +215,7 @@ def stand(current, speed):
 def road(top):
     def plan(time, rng):
         v = np.convolve(steps(time, rng, 0.2 * top, top, 240.0), np.ones(6) / 6, mode="same")
-        current = steps(time, rng, 130.0, 380.0, 180.0)
-        return {
-            "current_A": current,
-            "vehicle_speed_mps": v,
-            "speed_rpm": 90.0 * v,
-            "fan_flow_m3h": np.full_like(time, 138.0),
-        }
+        return driven(steps(time, rng, 130.0, 380.0, 180.0), v, 90.0 * v, np.full_like(time, 138.0))
 
     return plan
 

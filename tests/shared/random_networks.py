@@ -90,24 +90,9 @@ def machine(seed: int, most: int = 40) -> Machine:
     heated[:, solid:] = False
     copper, iron = heated * rng.uniform(0.2, 1.0, (2, n))
     time, inputs, around = _record(rng)
-    out = Machine(
-        C,
-        a,
-        b,
-        G,
-        forced,
-        natural,
-        radiating,
-        washed,
-        cell,
-        path,
-        copper,
-        iron,
-        time,
-        inputs,
-        around,
-        rng.uniform(15.0, 60.0) + rng.uniform(0.0, 20.0, n),
-    )
+    start = rng.uniform(15.0, 60.0) + rng.uniform(0.0, 20.0, n)
+    films = forced, natural, radiating, washed, cell
+    out = Machine(C, a, b, G, *films, path, copper, iron, time, inputs, around, start)
     return _scaled(out, rng.uniform(5.0, 120.0))
 
 
@@ -197,12 +182,8 @@ def built(m: Machine) -> tuple[Network, Record]:
         if P
     ]
     given = dict(zip(INPUTS, m.inputs.T, strict=True))
-    record = Record(
-        m.time,
-        given,
-        dict(zip((AMBIENT, INLET, OUTLET), m.around.T, strict=True)),
-        dict(zip(names, m.start, strict=True)),
-    )
+    air = dict(zip((AMBIENT, INLET, OUTLET), m.around.T, strict=True))
+    record = Record(m.time, given, air, dict(zip(names, m.start, strict=True)))
     parameters = tuple(Parameter(x.name, ((x.name, 1.0),)) for x in (*links, *sources, *iron))
     return net.extended(links, [*sources, *iron], parameters), record
 
@@ -323,15 +304,8 @@ def reference(m: Machine, rtol: float = 1e-9) -> np.ndarray:
         zero = u0[2] / (u0[2] - u1[2]) if u0[2] * u1[2] < 0.0 else 1.0
         for begin, end in ((t0, t0 + zero * (t1 - t0)), (t0 + zero * (t1 - t0), t1)):
             if end > begin:
-                run = solve_ivp(
-                    lambda t, y: at(t, y)[0],
-                    (begin, end),
-                    x[warm],
-                    "Radau",
-                    rtol=rtol,
-                    atol=1e-8,
-                    jac=lambda t, y: at(t, y)[1],
-                )
+                near = {"rtol": rtol, "atol": 1e-8, "jac": lambda t, y: at(t, y)[1]}
+                run = solve_ivp(lambda t, y: at(t, y)[0], (begin, end), x[warm], "Radau", **near)
                 at(end, run.y[:, -1])
         out.append(x.copy())
     return np.array(out)

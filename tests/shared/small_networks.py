@@ -51,21 +51,8 @@ def every_law(table=Table((0.0, 2.0, 10.0, 60.0), (1.0, 1.5, 2.0, 2.6))):  # noq
     return net.extended(links, sources, (*MULTIPLIERS, *SPECIAL))
 
 
-NAMES = (
-    "constant",
-    "linear",
-    "skin",
-    "power",
-    "radiation",
-    "table",
-    "film",
-    "forced",
-    "both",
-    "copper",
-    "iron",
-    "capacity:a",
-)
-MULTIPLIERS = tuple(Parameter(f"log {n}", ((n, 1.0),)) for n in NAMES)
+NAMES = "constant linear skin power radiation table film forced both copper iron capacity:a"
+MULTIPLIERS = tuple(Parameter(f"log {n}", ((n, 1.0),)) for n in NAMES.split())
 SPECIAL = (
     Parameter("relative", (("power", 1.0), ("iron", 0.5)), 0.2, mapping="relative", neutral=0.0),
     Parameter("amplitude", (("forced", 1.0),), 0.7, mapping="amplitude", neutral=0.0),

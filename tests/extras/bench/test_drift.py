@@ -16,6 +16,7 @@ C, G, P = 6e4, 20.0, 1000.0  # 50 K after 50 min
 
 
 def network():
+    """One body of 60 kJ/K that 20 W/K hold: 1000 W warm it by 50 K."""
     net = bare_network("body", {"body": C}, ["ambient"])
     film = node_link(net, "film", "link", "body", "ambient", Fixed(G))
     return net.extended([film], [node_source(net, "heat", "constant", {"body": 1.0}, Fixed(P))])

@@ -9,7 +9,7 @@ import tomllib
 import numpy as np
 import pytest
 from test_heat_run import cooling, warming
-from test_procedure_commands import NETWORK
+from test_procedure_commands import NETWORK, warmed
 
 from viz.pages.html import BROWSERS
 
@@ -207,23 +207,12 @@ def test_no_file_is_one_message(thermoscope, tmp_path):
     assert (done.code, len(done.errors)) == (2, 1)
 
 
-def two_bodies(seconds, off_s, current=15.0):
-    """Winding (degC) of the network NETWORK at some instants, by its own equations: backward Euler of 1 s steps."""
-    T, out = np.array([20.0, 20.0]), [20.0]
-    A = np.array([[3000.0 + 20.0, -20.0], [-20.0, 60000.0 + 25.0]])
-    for t in np.arange(1.0, seconds[-1] + 1.0):
-        heat = current**2 * (1 + 0.00393 * (T[0] - 20.0)) if t <= off_s else 0.0
-        T = np.linalg.solve(A, [3000.0 * T[0] + heat, 60000.0 * T[1] + 5.0 * 20.0])
-        out.append(T[0])
-    return np.interp(seconds, np.arange(len(out)), out)
-
-
 def test_way_back_along_the_network_of_a_case(thermoscope, tmp_path, monkeypatch):
     """From readings that begin 30 s late the network of the case finds the truth at switching off within 0.1 K."""
     monkeypatch.setattr("thermoscope.plugin.write_pdf", lambda page: None)
     off, later = 72000.0, np.arange(30.0, 331.0, 15.0)
     load = np.arange(0.0, off + 1.0, 600.0)
-    T = two_bodies(np.append(load, off + later), off)
+    T = warmed(np.append(load, off + later), off_s=off, step=1.0)[0]
     ohm = (235.0 + T) / 255.0
     (tmp_path / "tests").mkdir()
     (tmp_path / "network.toml").write_text(NETWORK)

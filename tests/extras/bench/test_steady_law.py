@@ -80,28 +80,13 @@ def test_an_input_that_counts_up_to_a_value_is_found():
     assert number(law, "speed counts up to")["value"] == pytest.approx(6e3, rel=0.05)
 
 
-def test_cooling_that_follows_nothing_has_no_law():
-    law = find_law(table(np.full(FLOW.size, 80.0), noise_K=0.1))
-    assert law.verdict == "no law"
-    assert law.sentence.startswith("No law: the readings do not say that the cooling follows flow or speed: about 80")
-
-
 def test_neither_names_nor_order_nor_units_matter():
     one = find_law(table(POWERS, noise_K=0.05))
     tests = table(POWERS, noise_K=0.05)
     back = np.arange(FLOW.size)[::-1]
     columns = replace(COLUMNS, inputs=(("b", "l/s"), ("a", "1/s")))
-    other = find_law(
-        steady_tests(
-            columns,
-            ("x", "y", "z"),
-            (tests.inputs / 60.0)[back],
-            tests.heat[back],
-            tests.coolant[back],
-            tests.ambient[back],
-            tests.readings[back],
-        )
-    )
+    rows = [x[back] for x in (tests.inputs / 60.0, tests.heat, tests.coolant, tests.ambient, tests.readings)]
+    other = find_law(steady_tests(columns, ("x", "y", "z"), *rows))
     assert other.best.form == one.best.form
     assert other.best.x == pytest.approx(one.best.x, abs=1e-4)  # where a fit ends: 1e-6 of -ln(probability)
 
@@ -121,13 +106,15 @@ OPTIONS = ["--heat", "P", "--coolant", "inlet", "--follows", "flow=l/min", "--fo
 OPTIONS += ["--temperatures", "T_*", "--ambient", "20"]
 
 
-@pytest.fixture
-def csv_file(tmp_path):
-    tests = table(POWERS, G0=5.0, noise_K=0.05)
-    rows = np.column_stack([tests.inputs, tests.coolant, tests.heat, tests.readings])
-    file = tmp_path / "tests.csv"
+def written(folder, tests):
+    rows, file = np.column_stack([tests.inputs, tests.coolant, tests.heat, tests.readings]), folder / "tests.csv"
     np.savetxt(file, rows, "%.6g", ",", header="flow,speed,inlet,P,T_a,T_b,T_c", comments="")
     return file
+
+
+@pytest.fixture
+def csv_file(tmp_path):
+    return written(tmp_path, table(POWERS, G0=5.0, noise_K=0.05))
 
 
 def test_the_command_gives_law_picture_and_predictions(csv_file, tmp_path, thermoscope):
@@ -144,14 +131,11 @@ def test_the_command_gives_law_picture_and_predictions(csv_file, tmp_path, therm
     assert (predicted["T_a_95_K"] > 0.0).all()
 
 
-def test_without_a_law_the_exit_code_is_1(tmp_path, thermoscope):
-    tests = table(np.full(FLOW.size, 80.0), noise_K=0.1)
-    file = tmp_path / "tests.csv"
-    rows = np.column_stack([tests.inputs, tests.coolant, tests.heat, tests.readings])
-    np.savetxt(file, rows, "%.6g", ",", header="flow,speed,inlet,P,T_a,T_b,T_c", comments="")
-    done = thermoscope("law", file, *OPTIONS)
-    assert done.code == 1
-    assert done.out.startswith("No law")
+def test_cooling_that_follows_nothing_has_no_law_and_exit_code_1(tmp_path, thermoscope):
+    done = thermoscope("law", written(tmp_path, table(np.full(FLOW.size, 80.0), noise_K=0.1)), *OPTIONS, "--json", "-")
+    assert (done.code, done.document["verdict"]) == (1, "no law")
+    no_law = "No law: the readings do not say that the cooling follows flow or speed: about 80"
+    assert done.document["sentence"].startswith(no_law)
 
 
 WRONG = {

@@ -40,8 +40,6 @@ def test_a_machine_leaves_a_residual():
     assert found.largest_K < 0.15 * found.winding_K
 
 
-def test_no_load_and_no_place():
+def test_no_load():
     with pytest.raises(InputError, match="a load with a current"):
         two_paths(read_network(PAIR), {"current_A": 0.0}, winding="winding", machine="machine")
-    with pytest.raises(InputError, match="unknown place"):
-        two_paths(read_network(PAIR), {"current_A": 1.0}, winding="coil", machine="machine")

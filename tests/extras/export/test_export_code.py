@@ -68,16 +68,8 @@ def curved():
 def test_films_by_reynolds_number(kind):
     """A flow that starts and stops through all regimes, over fluids of -30 to 90 degC."""
     net, given = curved()
-    law = streamed(
-        "flow",
-        0.5,
-        lambda v, fluid: duct_film(v, 0.01, 1.0, fluid),
-        glycol("ethylene", 50),
-        40.0,
-        True,
-        1e-4,
-        3e-4 if "cell" in kind else 0.0,
-    )
+    film, thin = (lambda v, fluid: duct_film(v, 0.01, 1.0, fluid)), 3e-4 if "cell" in kind else 0.0
+    law = streamed("flow", 0.5, film, glycol("ethylene", 50), 40.0, True, 1e-4, thin)
     if "still" in kind:
         law = replace(law, table=replace(law.table, still=net.links[1].law.temperature, exponent=4.0))
     link = node_link(net, "s", "film", "body", "air", law)
@@ -107,14 +99,20 @@ def test_temperature_laws_jumps_and_single_precision(flags, within):
     assert difference(Compiled(packed(network, {}, Reference(), states(network)), flags), network, given, {}) < within
 
 
-def test_the_code_is_clean_c99_without_allocation(tmp_path):
+@pytest.fixture
+def written(tmp_path):
+    """A folder with the code of the curved network."""
     network, _ = curved()
     for name, text in c_files(packed(network, {}, Reference(), states(network))).items():
         (tmp_path / name).write_text(text)
+    return tmp_path
+
+
+def test_the_code_is_clean_c99_without_allocation(written):
     warned = ["-std=c99", "-Wall", "-Wextra", "-pedantic", "-Werror", "-O2", "-c", "thermal_network.c"]
-    done = subprocess.run(["gcc", *warned], cwd=tmp_path, capture_output=True, text=True)
+    done = subprocess.run(["gcc", *warned], cwd=written, capture_output=True, text=True)
     assert done.returncode == 0, done.stderr
-    used = subprocess.run(["nm", "-u", "thermal_network.o"], cwd=tmp_path, capture_output=True, text=True).stdout
+    used = subprocess.run(["nm", "-u", "thermal_network.o"], cwd=written, capture_output=True, text=True).stdout
     assert not {"malloc", "calloc", "realloc", "free"} & set(used.split())
 
 
@@ -122,16 +120,13 @@ def test_the_code_is_clean_c99_without_allocation(tmp_path):
     ("target", "magic"),
     [("x86_64-windows-gnu", b"\x64\x86"), ("aarch64-macos", b"\xcf\xfa\xed\xfe"), ("x86_64-linux-gnu", b"\x7fELF")],
 )
-def test_zig_compiles_it_for_other_platforms(tmp_path, target, magic):
+def test_zig_compiles_it_for_other_platforms(written, target, magic):
     """Objects only: linking would first build each platform's C library, which takes minutes once."""
     pytest.importorskip("ziglang")
-    network, _ = curved()
-    for name, text in c_files(packed(network, {}, Reference(), states(network))).items():
-        (tmp_path / name).write_text(text)
     zig = [sys.executable, "-m", "ziglang", "cc", "-target", target, "-std=c99", "-c", "thermal_network.c", "-o", "o"]
-    done = subprocess.run(zig, cwd=tmp_path, capture_output=True, text=True)
+    done = subprocess.run(zig, cwd=written, capture_output=True, text=True)
     assert done.returncode == 0, done.stderr
-    assert (tmp_path / "o").read_bytes().startswith(magic)
+    assert (written / "o").read_bytes().startswith(magic)
 
 
 def test_the_header_says_what_a_user_must_know(tmp_path):

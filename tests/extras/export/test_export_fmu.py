@@ -13,7 +13,6 @@ from small_case import small_case
 from test_export_code import curved, states
 
 from extras.export.c_code import RUNTIME
-from extras.export.commands.export import export
 from extras.export.compilers import AGREES_K, here, sampled, signals_of
 from extras.export.document import document, mat
 from extras.export.fmu import fmu, variables
@@ -235,13 +234,11 @@ def test_a_law_that_c_cannot_have_ends_with_exit_code_2(thermoscope, tmp_path):
     assert not (case / "out").exists()
 
 
-def test_the_command_writes_a_model(tmp_path, thermoscope):
-    said = thermoscope("export", small_case(tmp_path), "--as", "json", "--limit", "winding=155", "--json", "-")
+def test_the_command_writes_a_model_and_the_workbook_is_still_there(tmp_path, thermoscope):
+    case = small_case(tmp_path)
+    said = thermoscope("export", case, "--as", "json", "--limit", "winding=155", "--json", "-")
     assert said.code == 0, said.err
     assert [Path(f).name for f in said.document["files"]] == ["model.json", "reference_solver.py"]
     assert {o["name"]: o["limit_degC"] for o in said.document["outputs"]}["winding"] == 155.0
-
-
-def test_the_workbook_is_still_there(tmp_path):
-    assert export(str(small_case(tmp_path)), tmp_path / "o", "csv", json=str(tmp_path / "said.json")) == 0
+    assert thermoscope("export", case, "--as", "csv", "--out", tmp_path / "o").code == 0
     assert list((tmp_path / "o").glob("*.csv"))

@@ -1,15 +1,14 @@
 """Every case that comes along, exported once: C, FMU, JSON and MAT run as `simulate` does."""
 
-import importlib.util
 import json
 from types import SimpleNamespace
 
 import numpy as np
 import pytest
 from test_export_code import CASES
-from test_export_fmu import Slave
+from test_export_fmu import Slave, solver
 
-from extras.export.c_code import RUNTIME, c_files
+from extras.export.c_code import c_files
 from extras.export.compilers import AGREES_K, Compiled, difference, sampled, signals_of
 from extras.export.document import document
 from extras.export.fmu import sources
@@ -62,15 +61,12 @@ def test_it_runs_in_fmpy(shipped, tmp_path):
 
 def heat_apart(said, model, network, given, values):
     """By how much (K) the heat flows of a JSON model shift a state in an hour, largest over some instants of a run."""
-    found = importlib.util.spec_from_file_location("reference_solver", RUNTIME / "reference_solver.py")
-    solver = importlib.util.module_from_spec(found)
-    found.loader.exec_module(solver)
     process = Process(network, values, ())
     by, z = process.driven(given), simulate(network, given, values, keep_states=True).z
     u, out = signals_of(model, given), 0.0
     for k in np.linspace(1, given.time.size - 1, INSTANTS).astype(int):
         x, names = z[k, : len(network.states)], [s.name for s in model.signals]
         F, G = process._at(by.core, x, by.u[k], by.factor[k])
-        off = solver.flow(said, x, dict(zip(names, u[k], strict=True))) - F
+        off = solver().flow(said, x, dict(zip(names, u[k], strict=True))) - F
         out = max(out, float(np.abs(np.linalg.solve(np.diag(by.core.C) / HOUR + G, off)).max()))
     return out

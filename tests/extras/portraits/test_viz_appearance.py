@@ -7,7 +7,7 @@ from PIL import Image
 
 from extras.portraits.cutting import cut_body
 from extras.portraits.dressed import dressed
-from extras.portraits.making import ball, bolt, box, extruded, oval, revolved, rod, rounded, swept
+from extras.portraits.making import ball, bolt, box, extruded, oval, revolved, rod, swept
 from extras.portraits.portrait import CAPTION, portrait
 from extras.portraits.shape import Body, Finish, joined
 from geom import load_machine
@@ -32,6 +32,7 @@ def bodies(machine):
 
 def test_every_body_is_closed_and_turned_outwards(bodies):
     assert [b.part for b in bodies if not b.shape.closed or b.shape.volume <= 0] == []
+    assert sum(b.added for b in bodies) > 10
 
 
 def test_every_meshed_part_is_shown_where_it_is(machine, bodies):
@@ -54,10 +55,6 @@ def test_a_long_shaft_moves_no_end_winding():
     assert right.points[:, 2].max() <= machine.part("winding.right").span[1] + 1e-3
 
 
-def test_something_is_added_to_every_machine(bodies):
-    assert sum(b.added for b in bodies) > 10
-
-
 def test_revolved_volumes_are_those_of_pappus():
     """Guldin: area times the way of its centroid; 120 chords miss 2 pi^2 / 3 / 120^2 of it, 0.05 %."""
     section = shapely.box(1.0, 0.0, 2.0, 1.0)
@@ -76,11 +73,6 @@ def test_a_strip_thinner_than_its_rounding_stays_closed():
     strip = extruded(shapely.box(0, 0, 1, 0.01), 0.0, 1.0, 0.02)
     assert strip.closed
     assert strip.volume == pytest.approx(0.01, rel=0.1)
-
-
-def test_an_outline_that_rounding_would_destroy_is_kept():
-    thin = shapely.box(0, 0, 1, 0.01)
-    assert rounded(thin, 0.1).equals(thin)
 
 
 def test_shapes_keep_their_volume_where_they_are_put():

@@ -26,22 +26,19 @@ def test_masses_by_material_are_those_of_the_parts():
     assert sum(masses(machine).values()) == pytest.approx(sum(rows[p.name].mass for p in machine.parts), rel=1e-9)
 
 
-def described(name, value, hottest):
-    rating = {"form": "S1", "input": "current_A", "value": value, "ci95": None, "at": "winding"}
-    spots = [{"place": "winding", "degC": hottest}]
-    figures = {
-        "masses_kg": {"steel": 10.0},
-        "pump_and_fan_W": 5.0,
-        "inputs": {"current_A": 20.0},
-        "settles": True,
-        "asks_for_bands": False,
-    }
-    return {"name": name, "hottest": spots, "rating": rating, **figures}
+def two_designs():
+    def described(name, value, hottest):
+        rating = {"form": "S1", "input": "current_A", "value": value, "ci95": None, "at": "winding"}
+        known = {"name": name, "hottest": [{"place": "winding", "degC": hottest}], "rating": rating, "settles": True}
+        known |= {"masses_kg": {"steel": 10.0}, "pump_and_fan_W": 5.0, "asks_for_bands": False}
+        return {**known, "inputs": {"current_A": 20.0}}
+
+    designs = [described("a", 20.0, 130.0), described("b", 22.0, 120.0)]
+    return {"dimensions": [], "boundaries": {"ambient": 40.0}, "designs": designs}
 
 
 def test_the_better_one_is_named_first():
-    document = {"dimensions": [], "boundaries": {"ambient": 40.0}}
-    document["designs"] = [described("a", 20.0, 130.0), described("b", 22.0, 120.0)]
+    document = two_designs()
     assert designs_summary(document).sentence.startswith("b carries most: current_A = 22, limited by winding.")
     document["designs"][1]["asks_for_bands"] = True
     assert "The rating of b has no band yet: --bands reads" in designs_summary(document).parts[1]
@@ -54,9 +51,7 @@ def test_the_better_one_is_named_first():
 
 def test_a_script_gets_the_same_tables():
     """Also as `ts.compare_designs`, which the extra offers by an entry point."""
-    document = {"dimensions": [], "boundaries": {"ambient": 40.0}}
-    document["designs"] = [described("a", 20.0, 130.0), described("b", 22.0, 120.0)]
-    designs = Designs(document)
+    designs = Designs(two_designs())
     assert "Assumed of all: ambient 40 degC." in repr(designs)
     assert "<table>" in designs._repr_html_()
     assert list(designs.to_frame().columns) == ["", "a", "b"]
@@ -65,17 +60,17 @@ def test_a_script_gets_the_same_tables():
     assert getattr(import_module(module), name) is compare_designs
 
 
-@pytest.mark.parametrize("names", [[FREE], [FREE] * 7])
-def test_one_design_is_nothing_to_compare(thermoscope, names):
-    refused = thermoscope("use", "compare-designs", *names)
-    assert refused.code == 2
-    assert "two to 6" in refused.err
-
-
-def test_a_picture_has_a_name_that_ends_in_png(thermoscope):
-    refused = thermoscope("use", "compare-designs", FREE, "pmsm-m2-no-base", "--picture", "designs.jpg")
-    assert refused.code == 2
-    assert "NAME.png" in refused.err
+@pytest.mark.parametrize(
+    ("words", "said"),
+    [
+        ([FREE], "two to 6"),
+        ([FREE] * 7, "two to 6"),
+        ([FREE, "pmsm-m2-no-base", "--picture", "designs.jpg"], "NAME.png"),
+    ],
+)
+def test_what_makes_no_sense_is_refused(thermoscope, words, said):
+    refused = thermoscope("use", "compare-designs", *words)
+    assert (refused.code, said in refused.err) == (2, True), refused.err
 
 
 @pytest.mark.nightly

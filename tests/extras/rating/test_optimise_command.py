@@ -1,15 +1,13 @@
 """thermoscope use optimise: a small case end to end, machine files that build, and what is wrong as one message."""
 
 import csv
-import json
 from pathlib import Path
 from types import SimpleNamespace
 
 import pytest
+from command_line import refusal
 from small_case import small_case
-from typer.testing import CliRunner
 
-from extras.rating.commands.optimise import read_bounds
 from extras.rating.design.condensations import Condensations
 from extras.rating.design.design_problem import temperatures_of
 from extras.rating.design.machine_keys import MachineFile, machine_file_text
@@ -17,11 +15,9 @@ from extras.rating.optimisation import search
 from extras.rating.optimisation.space import Space
 from geom import load_machine
 from geom.description.reading import read_geometry
-from geom.errors import InputError
 from geom.machine_file import families
 from lumped.build.pipeline import build
 from thermoscope.case_folder.runs import mean_rows
-from thermoscope.cli import whole_app
 
 EFFORT = ("--population", "12", "--generations", "4")
 
@@ -87,23 +83,9 @@ def test_a_search_that_is_stopped_gives_the_best_so_far(thermoscope, tmp_path, m
         ),
     ],
 )
-def test_what_is_wrong_is_one_message(tmp_path, contents, arguments, message):
-    case, out = small_case(tmp_path), tmp_path / "designs"
-    before = contents(tmp_path)
-    given = CliRunner().invoke(
-        whole_app(), ["use", "optimise", str(case), "--at", "ambient=20", "--out", str(out), *arguments]
-    )
-    assert isinstance(given.exception, InputError)
-    assert message in str(given.exception)
-    assert contents(tmp_path) == before
-
-
-def test_an_infeasible_problem_ends_with_exit_code_2(thermoscope, tmp_path):
-    case = small_case(tmp_path)
-    asked = ("--limit", "winding=30", "--vary", "current_A=80:90", "--at", "ambient=20", *EFFORT)
-    said = thermoscope("use", "optimise", case, *asked, cwd=tmp_path)
-    assert said.code == 2
-    assert "no design of 48 meets all limits" in said.err.splitlines()[-1]
+def test_what_is_wrong_is_one_message(tmp_path, arguments, message):
+    asked = ("use", "optimise", small_case(tmp_path), "--at", "ambient=20", "--out", tmp_path / "designs")
+    assert message in refusal(tmp_path, *asked, *arguments)
 
 
 def test_a_design_is_a_machine_file_that_builds(tmp_path):
@@ -155,26 +137,15 @@ def test_what_is_condensed_anew_can_be_built(name):
         assert file.at(point).parts
 
 
-def test_bounds_are_read():
-    assert read_bounds(["a=1:2", "b"]) == {"a": (1.0, 2.0), "b": None}
-    with pytest.raises(InputError, match="is not a range"):
-        read_bounds(["a=1"])
-
-
-def test_a_robust_design_is_judged_by_the_upper_end_of_its_band(tmp_path):
+def test_a_robust_design_is_judged_by_the_upper_end_of_its_band(thermoscope, tmp_path):
     """The copper's own prior of 5 % and the bands of the table widen every temperature."""
-    asked = ["--limit", "winding=400", "--vary", "current_A=40:90", "--population", "8", "--generations", "1"]
-    found = {}
-    for word in ("--robust", ""):
-        out, file = tmp_path / f"designs{word}", tmp_path / f"{word}.json"
-        case = small_case(tmp_path / f"case{word}")
-        given = [*asked, *filter(None, [word]), "--at", "ambient=20", "--out", str(out), "--json", str(file)]
-        done = CliRunner().invoke(whole_app(), ["use", "optimise", str(case), *given])
-        assert done.exit_code == 0, done.exception
-        found[word] = json.loads(file.read_text())["reference"]
-    rise = found[""]["peak_degC"] - 20.0
-    assert 0.1 < (found["--robust"]["peak_degC"] - found[""]["peak_degC"]) / rise < 1.0
-    assert found["--robust"]["copper_W"] == pytest.approx(found[""]["copper_W"], rel=1e-9)
+    asked = ("use", "optimise", small_case(tmp_path), "--limit", "winding=400", "--vary", "current_A=40:90")
+    asked += ("--at", "ambient=20", "--population", "8", "--generations", "1", "--json", "-", "--out")
+    done = [thermoscope(*asked, tmp_path / f"designs{k}", *more) for k, more in enumerate([("--robust",), ()])]
+    assert [d.code for d in done] == [0, 0], [d.err for d in done]
+    robust, plain = (d.document["reference"] for d in done)
+    assert 0.1 < (robust["peak_degC"] - plain["peak_degC"]) / (plain["peak_degC"] - 20.0) < 1.0
+    assert robust["copper_W"] == pytest.approx(plain["copper_W"], rel=1e-9)
 
 
 @pytest.mark.parametrize(

@@ -12,7 +12,6 @@ from small_case import small_case
 from extras.rating.commands.rate import rating_summary
 from extras.rating.request import places, rated_point
 from geom.description.roles import Identity, Role
-from geom.errors import InputError
 from lumped.model.build import bare_network
 from lumped.model.network import Row
 from thermoscope.case_folder.folder import load_machine_file
@@ -165,20 +164,15 @@ def test_a_speed_that_overheats_the_machine_by_itself_is_left_out_with_a_note(th
     assert (spun.code, spun.document["envelope"]) == (0, [])
 
 
-def test_a_role_stands_for_its_places():
+def test_a_role_stands_for_its_places_but_a_place_that_is_called_so_for_itself():
     rows = dict.fromkeys(("winding.field", "armature", "yoke"), Row(np.array([0]), np.ones(1)))
     what = {"winding.field": Identity(Role.WINDING), "armature": Identity(Role.WINDING), "yoke": Identity(Role.IRON)}
     limits = places({"winding": 155.0, "yoke": 120.0}, rows, what)
     assert limits == {"winding.field": 155.0, "armature": 155.0, "yoke": 120.0}
-    with pytest.raises(InputError, match="no temperature 'magnet' to limit"):
-        places({"magnet": 120.0}, rows, what)
-
-
-@pytest.mark.parametrize("asked", [{"winding": 155.0, "end": 140.0}, {"end": 140.0, "winding": 155.0}])
-def test_ends_of_a_winding_are_limited_with_the_place_that_is_called_so(asked):
-    rows = dict.fromkeys(("winding", "end", "head", "yoke"), Row(np.array([0]), np.ones(1)))
+    rows = dict.fromkeys(("winding", "end", "head", "yoke"), rows["yoke"])
     what = dict.fromkeys(("winding", "end", "head"), Identity(Role.WINDING))
-    assert places(asked, rows, what) == {"winding": 155.0, "end": 140.0, "head": 155.0}
+    for asked in ({"winding": 155.0, "end": 140.0}, {"end": 140.0, "winding": 155.0}):
+        assert places(asked, rows, what) == {"winding": 155.0, "end": 140.0, "head": 155.0}
 
 
 def test_a_cycle_and_a_map(thermoscope, tmp_path):

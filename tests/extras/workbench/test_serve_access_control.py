@@ -52,7 +52,7 @@ async def looked_at(tabs, number):
 
 
 def asked(folder, access, questions):
-    """Run `questions(address, session)` against a server of the case."""
+    """What `questions(address, session)` gives against a server of the case."""
 
     async def main():
         async with running(folder, access) as address, ClientSession(cookie_jar=CookieJar(unsafe=True)) as session:
@@ -75,31 +75,18 @@ async def running(folder, access, **options):
         await runner.cleanup()
 
 
-@pytest.mark.parametrize(
-    ("host", "local"),
-    [
-        ("127.0.0.1", True),
-        ("localhost", True),
-        ("::1", True),
-        ("[::1]", True),
-        ("0.0.0.0", False),
-        ("motor.example", False),
-    ],
-)
-def test_loopback_is_this_computer_only(host, local):
-    assert loopback(host) is local
+def test_loopback_is_this_computer_only():
+    local = {"127.0.0.1": True, "localhost": True, "::1": True, "[::1]": True, "0.0.0.0": False, "motor.example": False}
+    assert {host: loopback(host) for host in local} == local
 
 
-def test_a_token_is_made_where_none_is_given():
+def test_a_token_is_made_where_none_is_given_and_a_short_one_is_refused():
     assert len(token_for(None)) >= 32
     assert token_for(None) != token_for(None)
     assert token_for(TOKEN) == TOKEN
-
-
-@pytest.mark.parametrize("given", ["", "short"])
-def test_a_short_token_is_refused(given):
-    with pytest.raises(InputError, match="at least 16"):
-        token_for(given)
+    for short in ("", "short"):
+        with pytest.raises(InputError, match="at least 16"):
+            token_for(short)
 
 
 def test_files_outside_the_served_folders_do_not_exist(tmp_path):
@@ -120,10 +107,8 @@ def test_without_the_token_nothing_is_shown(folder, host):
     """On this computer neither: other users and programs share its ports."""
 
     async def questions(address, session):
-        seen = []
-        for path in ("/", "/tab/x/index.html", "/tab/x/ws", "/tab/x/report.html", "/?token=wrong"):
-            async with session.get(address + path, allow_redirects=False) as answer:
-                seen.append(answer.status)
+        paths = ("/", "/tab/x/index.html", "/tab/x/ws", "/tab/x/report.html", "/?token=wrong")
+        seen = [await status(session, address + path) for path in paths]
         async with session.get(f"{address}/?token={TOKEN}", allow_redirects=False) as answer:
             seen.append(answer.status)
             kept = answer.headers["Set-Cookie"]
@@ -138,42 +123,33 @@ def test_without_the_token_nothing_is_shown(folder, host):
     assert "<title>" in page
 
 
+async def status(session, url, method="GET", **options):
+    async with session.request(method, url, allow_redirects=False, **options) as answer:
+        return answer.status
+
+
+FOREIGN = ({"Host": "evil.example"}, {"Origin": "http://evil.example"}, {"Origin": "null"}, {})
+
+
 def test_other_names_and_other_pages_are_refused(folder):
     """A web page elsewhere must not reach a server on loopback, by its own name or from its own origin."""
 
     async def questions(address, session):
-        seen = []
-        for headers in ({"Host": "evil.example"}, {"Origin": "http://evil.example"}, {"Origin": "null"}, {}):
-            async with session.get(address + "/", headers=headers, allow_redirects=False) as answer:
-                seen.append(answer.status)
-        return seen
+        return [await status(session, address + "/", headers=headers) for headers in FOREIGN]
 
     assert asked(folder, AccessControl("127.0.0.1", ""), questions) == [403, 403, 403, 302]
+
+
+OUT = ("%2e%2e/%2e%2e/case.toml", "..%2f..%2fcase.toml", "%2fetc%2fpasswd", "report.html", "model.toml", "case.toml")
+OUT += ("%00", "a%00b", "x" * 5000, "%ff%fe", "a" * 300)
 
 
 def test_paths_do_not_lead_out(folder):
     async def questions(address, session):
         async with session.get(address + "/", allow_redirects=False) as answer:
             tab = answer.headers["Location"].removesuffix("index.html")
-        seen = {}
-        secret = folder.settings.path / "case.toml"
-        for name in (
-            "index.html",
-            "%2e%2e/%2e%2e/case.toml",
-            "..%2f..%2fcase.toml",
-            "%2fetc%2fpasswd",
-            f"/{secret}",
-            "report.html",
-            "model.toml",
-            "case.toml",
-            "%00",
-            "a%00b",
-            "x" * 5000,
-            "%ff%fe",
-            "a" * 300,
-        ):
-            async with session.get(f"{address}{tab}{name}", allow_redirects=False) as answer:
-                seen[name] = answer.status
+        names = ["index.html", *OUT, f"/{folder.settings.path / 'case.toml'}"]
+        seen = {name: await status(session, f"{address}{tab}{name}") for name in names}
         async with session.get(address + "/tab/unknown/index.html", allow_redirects=False) as answer:
             seen["unknown"] = answer.headers["Location"]
         return seen
@@ -220,10 +196,8 @@ def test_no_request_breaks_the_server(folder):
         seen = {}
         for method, path in ODD:
             url = URL(address + path.format(tab=tab), encoded=True)
-            async with session.request(method, url, allow_redirects=False) as answer:
-                seen[method, path[:40]] = answer.status
-        async with session.get(f"{address}/tab/{tab}/index.html") as answer:
-            return seen, answer.status
+            seen[method, path[:40]] = await status(session, url, method)
+        return seen, await status(session, f"{address}/tab/{tab}/index.html")
 
     seen, after = asked(folder, AccessControl("127.0.0.1", TOKEN), questions)
     assert {request: status for request, status in seen.items() if status >= 500} == {}
@@ -317,7 +291,8 @@ def test_a_ninth_tab_has_to_wait(folder, servers):
 def test_addresses_that_are_none(folder):
     async def questions(address, session):
         seen = []
-        for headers in ({"Host": "[::1"}, {"Origin": "http://[::1"}, {"Cookie": "thermoscope=\udcff"}):
+        cookie = f"thermoscope-{URL(address).port}=\udcff"
+        for headers in ({"Host": "[::1"}, {"Origin": "http://[::1"}, {"Cookie": cookie}):
             async with session.get(address + "/", headers=headers, allow_redirects=False) as answer:
                 seen.append((answer.status, answer.headers.get("X-Frame-Options")))
         return seen

@@ -34,18 +34,7 @@ def case(tmp_path):
 
 def recording(folder: Path, name: str = "bench.csv") -> Path:
     """As a recorder writes it: semicolons, decimal commas, a channel without a name that says anything."""
-    rows = []
-    for k in range(120):
-        now = [
-            f"{10 * k},0",
-            "80,0",
-            "12,0",
-            "20,5",
-            f"{20 + 0.2 * k:.1f}".replace(".", ","),
-            f"{20 + 0.1 * k:.1f}".replace(".", ","),
-            "ok",
-        ]
-        rows.append(";".join(now))
+    rows = [f"{10 * k},0;80,0;12,0;20,5;{20 + 0.2 * k:.1f};{20 + 0.1 * k:.1f};ok".replace(".", ",") for k in range(120)]
     file = folder / name
     file.write_text("\n".join([HEAD, *rows]), encoding="utf-8")
     return file
@@ -111,33 +100,39 @@ def test_a_case_beside_the_open_one(case, dropped):
     assert again == case.parent / "bench-2"
 
 
-def upload(case, files, token=TOKEN, **options):
-    """(status, what arrived) of a drop on a tab of the served case."""
+def visited(case, ask, **options):
+    """(what `ask(address, session, path of a tab)` gives on the served case, name and content of what was taken in)."""
     seen = []
 
     async def take_in(self, files):
         seen.extend((f.name, f.read_bytes()) for f in files)
 
     async def main():
-        folder = load_case(case)
         async with (
-            running(folder, AccessControl("127.0.0.1", TOKEN), **options) as address,
+            running(load_case(case), AccessControl("127.0.0.1", TOKEN), **options) as address,
             ClientSession(cookie_jar=CookieJar(unsafe=True)) as session,
         ):
             await session.get(f"{address}?token={TOKEN}", allow_redirects=False)
             first = await session.get(address, allow_redirects=False)
-            tab = first.headers["Location"].removesuffix("index.html").lstrip("/")
-            body = FormData(quote_fields=False)
-            for name, content in files:
-                body.add_field("recording", content, filename=name)
-            if not token:
-                session.cookie_jar.clear()
-            answer = await session.post(f"{address}/{tab}recordings", data=body)
-            return answer.status
+            return await ask(address, session, first.headers["Location"].removesuffix("index.html"))
 
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(Session, "take_in", take_in)
         return asyncio.run(main()), seen
+
+
+def upload(case, files, token=TOKEN, **options):
+    """(status, what arrived) of a drop on a tab of the served case."""
+
+    async def ask(address, session, tab):
+        body = FormData(quote_fields=False)
+        for name, content in files:
+            body.add_field("recording", content, filename=name)
+        if not token:
+            session.cookie_jar.clear()
+        return (await session.post(f"{address}{tab}recordings", data=body)).status
+
+    return visited(case, ask, **options)
 
 
 def test_files_arrive_under_their_names_and_nowhere_else(case):
@@ -160,55 +155,33 @@ def test_a_name_that_no_file_may_have_is_made_one(case):
     assert [name[-4:] for name, _ in seen[:3]] == [".csv"] * 3
 
 
-def test_a_zero_byte_in_a_name_stores_nothing(case, monkeypatch):
+def test_a_zero_byte_in_a_name_stores_nothing(case):
     """No client's library sends one: the server answers 4xx, stores nothing, and serves on."""
-    taken = []
 
-    async def take_in(self, files):
-        taken.extend(files)
+    async def ask(address, session, tab):
+        cookies = "; ".join(f"{c.key}={c.value}" for c in session.cookie_jar)
+        body = b'--X\r\nContent-Disposition: form-data; name="recording"; filename="a\0b.csv"\r\n\r\n1\r\n--X--\r\n'
+        head = (
+            f"POST {tab}recordings HTTP/1.1\r\nHost: {address.removeprefix('http://')}\r\nCookie: {cookies}\r\n"
+            f"Content-Type: multipart/form-data; boundary=X\r\nContent-Length: {len(body)}\r\n"
+            "Connection: close\r\n\r\n"
+        )
+        reader, writer = await asyncio.open_connection("127.0.0.1", int(address.rpartition(":")[2]))
+        writer.write(head.encode() + body)
+        answer = await reader.read()
+        writer.close()
+        return answer, (await session.get(f"{address}{tab}index.html")).status
 
-    monkeypatch.setattr("extras.workbench.session.Session.take_in", take_in)
-
-    async def main():
-        folder = load_case(case)
-        async with (
-            running(folder, AccessControl("127.0.0.1", TOKEN)) as address,
-            ClientSession(cookie_jar=CookieJar(unsafe=True)) as session,
-        ):
-            await session.get(f"{address}?token={TOKEN}", allow_redirects=False)
-            first = await session.get(address, allow_redirects=False)
-            tab = first.headers["Location"].removesuffix("index.html")
-            cookies = "; ".join(f"{c.key}={c.value}" for c in session.cookie_jar)
-            body = b'--X\r\nContent-Disposition: form-data; name="recording"; filename="a\0b.csv"\r\n\r\n1\r\n--X--\r\n'
-            head = (
-                f"POST {tab}recordings HTTP/1.1\r\nHost: {address.removeprefix('http://')}\r\nCookie: {cookies}\r\n"
-                f"Content-Type: multipart/form-data; boundary=X\r\nContent-Length: {len(body)}\r\n"
-                "Connection: close\r\n\r\n"
-            )
-            reader, writer = await asyncio.open_connection("127.0.0.1", int(address.rpartition(":")[2]))
-            writer.write(head.encode() + body)
-            answer = await reader.read()
-            writer.close()
-            after = await session.get(f"{address}{tab}index.html")
-            return answer, after.status
-
-    answer, after = asyncio.run(main())
+    (answer, after), taken = visited(case, ask)
     assert answer.startswith(b"HTTP/1.1 400")
     assert answer.endswith(b"not readable as an upload of files")
     assert after == 200
     assert taken == []
 
 
-def test_strangers_cannot_drop(case):
-    status, seen = upload(case, [("a.csv", b"1")], token="")
-    assert status == 401
-    assert seen == []
-
-
-def test_a_drop_that_is_too_large_is_refused(case):
-    status, seen = upload(case, [("a.csv", b"x" * 100)], largest_drop=10)
-    assert status == 413
-    assert seen == []
+@pytest.mark.parametrize(("options", "status"), [({"token": ""}, 401), ({"largest_drop": 10}, 413)])
+def test_strangers_cannot_drop_and_nobody_too_much(case, options, status):
+    assert upload(case, [("a.csv", b"x" * 100)], **options) == (status, [])
 
 
 def test_what_no_reader_likes_is_one_message_with_its_name(case, tmp_path):

@@ -56,13 +56,10 @@ def test_it_says_how_a_run_ended(written):
     assert (state["stop"], state["fault"]) == ("the line is gone", True)
 
 
-def test_before_the_first_look_there_is_nothing_to_show(written, tmp_path):
+def test_before_the_first_look_there_is_nothing_to_show_and_done_is_said_beside_the_journal(written, tmp_path):
     assert live.newest(tmp_path) is None
-    assert live.state_and_picture(written(*RUN[:2]), LIGHT) is None
-
-
-def test_done_is_said_beside_the_journal(written, tmp_path):
-    file = written(*RUN)
+    file = written(*RUN[:2])
+    assert live.state_and_picture(file, LIGHT) is None
     assert live.newest(tmp_path) == file
     live.say_done(file)
     assert (tmp_path / "tests" / "live.done").exists()

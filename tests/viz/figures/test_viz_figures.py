@@ -36,16 +36,12 @@ EFFECTS = {
 RANKED = [{"factor": "base", "measure": 0.44, "conf95": 0.16}, {"factor": "speed", "measure": 0.01, "conf95": 0.01}]
 DRIFT = {"cause": "sensor.drift@T_base", "words": "sensor drifts during the test at T_base", "probability": 0.06}
 EXPLANATIONS = [
-    {"cause": "wind@flange", "words": "wind at flange.right", "probability": 0.93, "alone": 0.8, "partners": [DRIFT]},
-    {"cause": "nothing", "words": "nothing is missing", "probability": 0.05, "alone": 0.05, "partners": []},
-    {
-        "cause": "heat@yoke",
-        "words": "heat of unknown cause at yoke",
-        "probability": 0.016,
-        "alone": 0.016,
-        "partners": [],
-    },
-    {"cause": "others", "words": "anything else", "probability": 0.004, "alone": 0.0, "partners": []},
+    {"cause": cause, "words": words, "probability": p, "alone": alone, "partners": [DRIFT] if alone < p else []}
+    for cause, words, p, alone in (
+        ("wind@flange", "wind at flange.right", 0.93, 0.8),
+        ("nothing", "nothing is missing", 0.05, 0.05),
+        ("heat@yoke", "heat of unknown cause at yoke", 0.016, 0.016),
+    )
 ]
 HOUR = np.linspace(0.0, 3600.0, 61)
 WARM = 20.0 + 60.0 * (1.0 - np.exp(-HOUR / 1200.0))
@@ -53,14 +49,8 @@ PLACES = [
     uncertain.Predicted("sensor T_yoke_degC", WARM, 0.03 * (WARM - 20.0), WARM + 1.0),
     uncertain.Predicted("armature", WARM + 20.0, 0.2 * (WARM - 20.0)),
 ]
-VALUE = {
-    "name": "link.a-b",
-    "value": 1.2,
-    "unit": "1",
-    "ci95": [1.1, 1.3],
-    "prior": [1.0, 0.5, 2.0],
-    "identified": True,
-}
+VALUE = {"name": "link.a-b", "value": 1.2, "unit": "1", "ci95": [1.1, 1.3], "prior": [1.0, 0.5, 2.0]}
+VALUE |= {"identified": True}
 
 
 def driven(c):
@@ -215,31 +205,9 @@ def test_empty_history_is_refused():
 
 
 def test_what_would_have_to_differ_is_drawn_with_what_cannot(tmp_path):
-    row = {"test": "run4", "unit": "1", "nats": 9.0}
-    found = {
-        "limit": 3.0,
-        "differences": [
-            {
-                **row,
-                "parameter": "capacity.stator",
-                "others": 1.0,
-                "here": 2.7,
-                "sd": 6.0,
-                "possible": False,
-                "relative": True,
-            },
-            {
-                **row,
-                "parameter": "bias of T",
-                "others": 0.1,
-                "here": -0.9,
-                "sd": -4.0,
-                "possible": True,
-                "relative": False,
-                "unit": "K",
-            },
-        ],
-    }
+    names = ("parameter", "others", "here", "sd", "possible", "relative", "unit")
+    rows = ("capacity.stator", 1.0, 2.7, 6.0, False, True, "1"), ("bias of T", 0.1, -0.9, -4.0, True, False, "K")
+    found = {"limit": 3.0, "differences": [{"test": "run4", "nats": 9.0, **dict(zip(names, r))} for r in rows]}
     figure = scores.differences(found, png=tmp_path / "differences.png")
     (ax,) = figure.axes
     assert [t.get_text() for t in ax.get_yticklabels()] == ["bias of T in run4", "capacity.stator in run4"]

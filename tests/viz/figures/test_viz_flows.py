@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from PIL import Image
+from PIL import Image, ImageSequence
 from small_motor import LEVELS, RADII, motor
 
 from geom.errors import InputError
@@ -35,16 +35,13 @@ def heat():
     return heat_flows(net, Balance(seconds, through, made, 75.0 * seconds, 25.0 * seconds, np.stack([z, z])))
 
 
-def test_what_is_lost_leaves_or_is_stored(heat):
+def test_what_is_lost_leaves_or_is_stored_and_flows_keep_sign_and_conductance_of_their_link(heat):
     assert heat.losses == pytest.approx({"iron": 100.0})
     assert heat.out == pytest.approx({"housing": 75.0})
     assert heat.stored == pytest.approx(25.0)
-
-
-def test_flow_keeps_the_sign_of_its_link(heat):
     flow = next(f for f in heat.flows if f.kind == "contact")
-    assert (flow.start, flow.end) == ("housing", "yoke")
-    assert flow.watts == pytest.approx(-75.0)
+    assert (flow.start, flow.end, flow.watts) == ("housing", "yoke", pytest.approx(-75.0))
+    assert {f.kind: f.conductance for f in heat.flows} == pytest.approx({"contact": 2.0, "film": 5.0})
 
 
 @pytest.mark.parametrize(("joules", "step"), [([0, 900, 1800, 1800], 1), ([0, 0, 900, 1000], 1), ([0, 0, 0, 0], 2)])
@@ -54,10 +51,6 @@ def test_a_test_that_ends_at_standstill_is_drawn_where_it_last_ran(joules, step)
     seconds, heat = 10.0 * np.arange(4), np.array(joules, float)
     z = np.full((4, 2), 20.0)
     assert last_running_step(net, Balance(seconds, {}, {"loss:iron": heat}, 0 * heat, heat, z)) == step
-
-
-def test_conductance_is_that_of_the_link(heat):
-    assert {f.kind: f.conductance for f in heat.flows} == pytest.approx({"contact": 2.0, "film": 5.0})
 
 
 def test_width_is_conductance_and_colour_is_heat():
@@ -74,25 +67,29 @@ def test_width_is_conductance_and_colour_is_heat():
     p.close()
 
 
-def test_where_nothing_conducts_no_line_is_drawn():
+def test_where_nothing_conducts_no_line_is_drawn_and_colours_span_the_nodes():
+    """A state without a place of its own does not stretch the range."""
     still = Heat({}, (Flow("yoke", "housing", "link", 0.0, 0.0),), {})
-    p = network_in_machine(MESH, {"yoke": 90.0, "housing": 40.0}, still)
+    p = network_in_machine(MESH, {"yoke": 90.0, "housing": 40.0, "shape.1": -150.0}, still)
     assert "link 0" not in p.actors
+    assert p.actors["nodes"].mapper.scalar_range == (40.0, 90.0)
     p.close()
 
 
-def test_ribbons_carry_their_watts():
-    drawn = Heat({"copper": 300.0, "iron": 100.0}, (), {"fan:a": 150.0, "fan:b": 50.0, "housing": 120.0, "shaft": 1.0})
-    text = paper.svg(sankey_of_losses(drawn), "s").replace("\u00a0", " ")
-    shown = ["copper  300 W", "iron  100 W", "400 W", "fan  200 W", "housing  120 W", "warms the machine  79 W"]
-    assert [word for word in shown if word not in text] == []
+OUT = {"fan:a": 150.0, "fan:b": 50.0, "housing": 120.0, "shaft": 1.0}
+RIBBONS = {
+    "warms": ({"copper": 300.0, "iron": 100.0}, OUT, ("iron  100 W", "400 W", "fan  200 W", "warms the machine  79 W")),
+    "cools": ({"copper": 300.0}, {"housing": 390.0}, ("the machine cools  90 W", "390 W", "housing  390 W")),
+}
+
+
+@pytest.mark.parametrize("kind", RIBBONS)
+def test_ribbons_carry_their_watts(kind):
+    """What a cooling machine gives up comes in with its losses; what is small has no name of its own."""
+    losses, out, shown = RIBBONS[kind]
+    text = paper.svg(sankey_of_losses(Heat(losses, (), out)), "s").replace("\u00a0", " ")
+    assert [word for word in ("copper  300 W", *shown) if word not in text] == []
     assert "shaft" not in text
-
-
-def test_what_a_cooling_machine_gives_up_comes_in_with_its_losses():
-    text = paper.svg(sankey_of_losses(Heat({"copper": 300.0}, (), {"housing": 390.0})), "s").replace("\u00a0", " ")
-    shown = ["copper  300 W", "the machine cools  90 W", "390 W", "housing  390 W"]
-    assert [word for word in shown if word not in text] == []
 
 
 @pytest.mark.parametrize(("count", "out"), [(1, 1.0), (14, 1.0), (3, 900.0)])
@@ -124,20 +121,15 @@ def test_nodes_on_one_spot_are_pushed_apart():
     assert moved["c"].tolist() == [0, 0, 1.0]
 
 
-def test_network_picture_shows_its_lines(heat, tmp_path):
-    network_in_machine(MESH, {"yoke": 90.0, "housing": 40.0}, heat, png=tmp_path / "n.png").close()
-    network_in_machine(MESH, {"yoke": 90.0, "housing": 40.0}, Heat({}, (), {}), png=tmp_path / "0.png").close()
-    with_lines, without = (np.asarray(Image.open(tmp_path / f"{n}.png").convert("RGB")).astype(int) for n in "n0")
-    assert (np.abs(with_lines - without).max(axis=2) > 60).sum() > 300
+def frames_of(file):
+    with Image.open(file) as gif:
+        return [np.asarray(one.convert("RGB")).astype(int) for one in ImageSequence.Iterator(gif)]
 
 
 def test_animation_has_a_frame_per_time_and_warms_up(tmp_path):
     fields = np.linspace(20.0, 90.0, 4)[:, None] * np.ones(NODES.size)
-    gif = Image.open(animate(NODES, [0.0, 600.0, 1200.0, 1800.0], fields, tmp_path / "a.gif"))
-    assert gif.n_frames == 4
-    first = np.asarray(gif.convert("RGB")).astype(int)
-    gif.seek(3)
-    last = np.asarray(gif.convert("RGB")).astype(int)
+    first, *_, last = frames = frames_of(animate(NODES, [0.0, 600.0, 1200.0, 1800.0], fields, tmp_path / "a.gif"))
+    assert len(frames) == 4
     assert last[200:500, 200:700, 1].mean() > first[200:500, 200:700, 1].mean() + 20
 
 
@@ -151,10 +143,7 @@ def test_small_hot_parts_keep_their_colour_in_a_gif(tmp_path):
         one = np.clip(shell + 2 * k, 0, 255).astype(np.uint8)
         one[spot] = (230 + k, 140, 60)
         pictures.append(one)
-    gif = Image.open(WRITERS[".gif"](tmp_path / "a.gif", pictures, 12.0))
-    for k, one in enumerate(pictures):
-        gif.seek(k)
-        seen = np.asarray(gif.convert("RGB")).astype(int)
+    for one, seen in zip(pictures, frames_of(WRITERS[".gif"](tmp_path / "a.gif", pictures, 12.0)), strict=True):
         assert np.abs(seen[spot] - one[spot]).max() <= 8
 
 
@@ -171,11 +160,3 @@ def test_a_label_on_a_line_covers_no_node_and_no_other_label():
 
 
 PIXEL = 0.0015  # m: a line of a metre is 670 of them long
-
-
-def test_the_network_s_colours_span_its_own_nodes():
-    """A state without a place of its own does not stretch the range."""
-    heat = Heat({}, (Flow("yoke", "housing", "link", 75.0, 8.0),), {})
-    p = network_in_machine(MESH, {"yoke": 90.0, "housing": 40.0, "shape.1": -150.0}, heat)
-    assert p.actors["nodes"].mapper.scalar_range == (40.0, 90.0)
-    p.close()

@@ -68,12 +68,6 @@ def test_sensor_shows_readings_model_and_their_difference():
     np.testing.assert_allclose(named(drawn, "earlier model")["y"], c.before["flange.right"][c.thin])
 
 
-def test_only_the_wrong_sensor_is_coloured():
-    colours = {t["name"]: t["line"]["color"] for t in data(DRAW["residuals"]())}
-    assert len({c for name, c in colours.items() if name != "flange.right"}) == 1
-    assert colours["flange.right"] != colours["yoke"]
-
-
 def test_confusion_shows_sizes():
     np.testing.assert_allclose(data(DRAW["confusion"]())[0]["z"], [[1.0, 0.83], [0.83, 1.0]])
 

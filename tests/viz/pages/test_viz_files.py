@@ -38,21 +38,13 @@ def test_other_endings_are_refused(tmp_path):
 
 @pytest.mark.heavy
 @pytest.mark.skipif(BROWSER is None, reason="needs a browser: apt-get install -y chromium")
-def test_report_is_printed(tmp_path):
-    pdf = write_pdf(write_report(Report("road-test", "A test of the printer."), tmp_path / "report.html"))
-    assert pdf is not None
-    assert pdf.read_bytes().startswith(b"%PDF-")
-    assert pdf.stat().st_size > 5000
-
-
-@pytest.mark.heavy
-@pytest.mark.skipif(BROWSER is None, reason="needs a browser: apt-get install -y chromium")
 def test_what_opens_on_a_click_is_printed(tmp_path):
     places = [
         {"place": f"slot {k}", "mesh_K": 0.1, "condensation_K": 0.1, "time_K": 0.1, "total_K": 0.2} for k in range(300)
     ]
     pdf = write_pdf(write_report(Report("road-test", error_budget={"stand": places}), tmp_path / "report.html"))
     assert pdf is not None
+    assert pdf.read_bytes().startswith(b"%PDF-")
     assert len(re.findall(rb"/Type\s*/Page\b", pdf.read_bytes())) > 3  # 300 rows need that many, a closed section one
 
 

@@ -34,8 +34,7 @@ def test_section_through_mesh_lines_has_the_area_of_the_half_planes():
     flange = 2 * (RADII[-1] - RADII[1]) * (LEVELS[2] - LEVELS[1])
     cut = section(NODES, np.array([1.0, 0.0, 0.0]))
     for part, expected in (("shaft", shaft), ("flange.left", flange)):
-        only = cut.part == NODES.parts.index(part)
-        assert area(type(cut)(cut.nodes, cut.weights, cut.triangles[only], cut.part[only])) == pytest.approx(expected)
+        assert area(cut.only(cut.part == NODES.parts.index(part))) == pytest.approx(expected)
 
 
 @pytest.mark.parametrize("start", [0.0, 13.7, 90.0])
@@ -61,22 +60,19 @@ def test_nothing_is_left_inside_the_wedge():
 def test_flat_sections_have_no_lines_inside_a_part():
     """The yoke's section is two rectangles: their edges are on its outline only."""
     cut = section(NODES, np.array([np.sin(0.3), np.cos(0.3), 0.0]))
-    only = cut.part == NODES.parts.index("yoke")
-    yoke = type(cut)(cut.nodes, cut.weights, cut.triangles[only], cut.part[only]).compact()
+    yoke = cut.only(cut.part == NODES.parts.index("yoke")).compact()
     length = feature_edges(polydata(yoke)).compute_cell_sizes(volume=False, area=False)["Length"].sum()
     z = LEVELS[8] - LEVELS[2]
     radial = np.ptp(np.hypot(*yoke.points[:, :2].T))
     assert length == pytest.approx(4 * (z + radial), rel=1e-3)
 
 
-def test_wrong_number_of_temperatures_says_how_many_fit():
-    with pytest.raises(InputError, match=f"{NODES.size} values"):
-        on_nodes(NODES, np.zeros(7))
-
-
-def test_temperatures_must_be_finite():
-    with pytest.raises(InputError, match="finite"):
-        on_nodes(NODES, np.full(NODES.size, np.nan))
+@pytest.mark.parametrize(
+    ("T", "says"), [(np.zeros(7), f"{NODES.size} values"), (np.full(NODES.size, np.nan), "finite")]
+)
+def test_temperatures_are_one_finite_number_a_node(T, says):
+    with pytest.raises(InputError, match=says):
+        on_nodes(NODES, T)
 
 
 def test_wedge_wider_than_half_is_refused():

@@ -21,29 +21,13 @@ def pixels(path):
     return np.asarray(Image.open(path).convert("RGB")).astype(int)
 
 
-@pytest.fixture(scope="module")
-def plain(tmp_path_factory):
-    path = tmp_path_factory.mktemp("field") / "plain.png"
-    cutaway(NODES, FIELD, limits=(20.0, 120.0), png=path).close()
-    return pixels(path)
-
-
-def test_picture_is_full_size_and_not_blank(plain):
+def test_picture_is_full_size_and_not_blank(tmp_path):
+    cutaway(NODES, FIELD, limits=(20.0, 120.0), png=tmp_path / "plain.png").close()
+    plain = pixels(tmp_path / "plain.png")
     assert plain.shape == (800, 1280, 3)
     machine = (plain < 250).any(axis=2)
     assert 0.1 < machine.mean() < 0.8
     assert plain[machine].std() > 20
-
-
-def test_no_colour_is_near_black(plain):
-    """Edges are faint lines; the field itself stays light enough to see them."""
-    assert (plain.max(axis=2) < 40).mean() < 0.02
-
-
-def test_hotter_field_gives_a_yellower_picture(plain, tmp_path):
-    cutaway(NODES, FIELD + 20.0, limits=(20.0, 120.0), png=tmp_path / "hot.png").close()
-    hot = pixels(tmp_path / "hot.png")[:, :1100]
-    assert hot[..., 1].mean() > plain[:, :1100, 1].mean() + 2  # green rises along the scale
 
 
 def test_pair_of_equal_fields_is_equal_and_of_unequal_ones_is_not(tmp_path):

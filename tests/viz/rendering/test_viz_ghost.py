@@ -47,13 +47,6 @@ def test_a_ray_to_a_sensor_ends_at_its_own_part(view):
         assert np.linalg.norm(at - xyz) < SLACK
 
 
-def test_without_the_windows_it_would_end_elsewhere():
-    surface = cut_away(NODES, QUARTER)
-    eye = eye_of(surface.points, View())
-    at, _ = first_hit(surface, eye, np.array(INSIDE["winding.armature"]))
-    assert np.linalg.norm(at - INSIDE["winding.armature"]) > SLACK
-
-
 def test_a_window_takes_no_area_away():
     """What became transparent and what stays solid, the sections at the sensors apart, are the surface."""
     surface = exposed(NODES)

@@ -62,10 +62,8 @@ def test_labels_stand_clear(kind):
     assert len(found) == (len(NODES.parts) if kind == "parts" else 6)
     end = SIZE[0] * (1.0 if kind == "parts" else 1.0 - BAR)
     for words, box in found.items():
-        assert box[0] >= 0, words
-        assert box[1] <= end, words
-        assert box[2] >= 0, words
-        assert box[3] <= SIZE[1], words
+        assert 0 <= box[0] <= box[1] <= end, words
+        assert 0 <= box[2] <= box[3] <= SIZE[1], words
     for a, b in combinations(found, 2):
         assert apart(found[a], found[b]), (a, b)
 

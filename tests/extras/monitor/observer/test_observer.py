@@ -154,6 +154,7 @@ def test_parts_of_a_record_are_the_whole(design):
     out = []
     for first in range(0, 900, 300):
         some = slice(max(first - 1, 0), first + 300)
-        record = Record(truth.time[some], {"current_A": truth.current[some]}, {"ambient": np.full(len(truth.time[some]), 20.0)})  # fmt: skip  # noqa: E501
+        time = truth.time[some]
+        record = Record(time, {"current_A": truth.current[some]}, {"ambient": np.full(time.size, 20.0)})
         out += one.follow(record, truth.y[some])
     assert_allclose([s.x for s in out], [s.x for s in whole[:900]], atol=1e-9)

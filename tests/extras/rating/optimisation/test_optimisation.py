@@ -168,8 +168,8 @@ VARIABLES = (Variable("flow", 0.5, 2.0, 1.0), Variable("height", 0.5, 2.0, 1.0))
 REFERENCE = np.array([200.0, 400.0])
 
 
-def two(limit=140.0):
-    p = problem(VARIABLES, limit)
+def two():
+    p = problem(VARIABLES, 140.0)
     return Pumped(p.network, p.values, p.inputs, p.boundaries, p.space, p.spots, 1, aimed=(PEAK, AUXILIARY))
 
 
@@ -200,11 +200,6 @@ def test_no_design_of_a_pareto_set_is_beaten():
     assert len(F) > 5
     assert not any(np.all(f >= F, axis=1).sum() > 1 for f in F)
     assert np.all(np.diff(F[:, 0]) > 0)
-
-
-def test_an_infeasible_problem_names_its_limit():
-    with pytest.raises(InputError, match="no design of 80 meets all limits: the nearest one exceeds 'body <= 30 degC'"):
-        pareto_set(two(30.0), nsga2, Effort(16, 5))
 
 
 def test_a_design_that_is_no_machine_counts_as_infeasible():
