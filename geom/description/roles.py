@@ -74,7 +74,7 @@ def identity(role: Role | None, turns: bool | None = None) -> Identity:
 def words_of(text: str) -> frozenset[str]:
     """Words, and long ones as controllers and CAN tools have to write them: without accents, German ones with an e."""
     words = text.split()
-    return frozenset(words) | {p for w in words if len(w) > SHORTEST for p in (plain(w), w.translate(GERMAN))}
+    return frozenset(words) | {p for w in words if len(w) >= SHORTEST for p in (plain(w), w.translate(GERMAN))}
 
 
 def plain(word: str) -> str:

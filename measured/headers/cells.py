@@ -51,7 +51,9 @@ def number(cell: object) -> float:
         return float(cell)
     if isinstance(cell, int | float):
         return float(cell)
-    text = re.sub(r"^([-+])\s+", r"\1", str(cell).strip().replace("\u2212", "-"))
+    text = str(cell).strip().replace("\u2212", "-")
+    if text[1:2].isspace():
+        text = re.sub(r"^([-+])\s+", r"\1", text)
     if NUMBER.fullmatch(text):
         return float(text.replace(",", "."))
     if GROUPED.fullmatch(text):

@@ -77,7 +77,8 @@ def layout(rows: Sequence[Row], where: str) -> Layout:
         merged: Iterator[str] = accumulate(above[-1], lambda group, cell: cell or group)
         groups = list(merged)
         clear = [len(n) > 1 and _informative([n]) and not {*tokens(split_unit(n)[0])} <= SETPOINT | READ for n in names]
-        once = [names.count(n) == 1 and (t or not _informative([g])) for g, n, t in zip(groups, names, clear)]
+        whole = [t or not _informative([g]) for g, t in zip(groups, clear)]
+        once = [names.count(n) == 1 and t and bool(split_unit(n)[0]) for n, t in zip(names, whole)]  # not a unit alone
         names = [n if once[j] or not n else f"{split_unit(groups[j])[0]} {n}".strip() for j, n in enumerate(names)]
     under = [_padded(rows[i], width) for i in block if i > header and i != units]
     if measured := next((r for r in under if all(split_unit(c)[1] for c in r)), ()):  # "Temperature (°C)" of each
@@ -208,10 +209,10 @@ def trimmed(row: Row) -> Row:
 def _readings(row: Row) -> bool:
     cells = [c for c in row if c is not None and str(c).strip()]
     good = sum(is_reading(c) for c in cells)
-    numbers = [number(c) for c in cells if number(c) == number(c)]
+    numbers = [value for c in cells if (value := number(c)) == value]
     if FIRM <= len(numbers) == good < len(cells) and bool((np.diff(numbers) == 1).all()):
         return False  # names of channels that count on, and others: 1, 2, 3, "Oven", "Time"
-    return good > 0 and good >= LEAST * len(cells) and any(np.isfinite(number(c)) for c in cells)
+    return good > 0 and good >= LEAST * len(cells) and any(np.isfinite(numbers))
 
 
 def _first(rows: Sequence[Row], width: int, where: str) -> int:
@@ -219,7 +220,7 @@ def _first(rows: Sequence[Row], width: int, where: str) -> int:
 
     A few rows before a header of their own are settings of channels, whose ranges look like readings.
     """
-    fits = [_readings(row) and width / 2 < len(row) and len(trimmed(row)) <= width for row in rows]
+    fits = [width / 2 < len(row) and len(trimmed(row)) <= width and _readings(row) for row in rows]
     labels = [fit and not is_reading("" if row[0] is None else row[0]) for fit, row in zip(fits, rows, strict=True)]
     for i in range(len(rows)):
         if all(fits[i : i + FIRM]) and len(fits[i : i + FIRM]) == FIRM:

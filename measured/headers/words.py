@@ -3,12 +3,14 @@
 import re
 import tomllib
 from collections.abc import Mapping
+from functools import lru_cache
 from pathlib import Path
 
 from geom.description.roles import GERMAN, ROLE_WORDS, SHORTEST, Role, words_of
 
 WORD = re.compile(r"[A-ZÀ-ÖØ-Þ]?[a-zß-öø-ſ]+|[A-ZÀ-ÖØ-Þ]+(?![a-zß-öø-ÿ])|\d+|(?:[^\W\d_A-Za-zªµºÀ-ſ]|[\u0e30-\u0e4e])+")
 
+NAMES = 4096  # of a wide file, each of which is asked for beside every other
 IDEOGRAPHS = "\u0e00"  # from here on a sign is a word, or words stand without blanks between them
 
 VOCABULARY = tomllib.loads(Path(__file__).with_name("vocabulary.toml").read_text("utf-8"))
@@ -48,6 +50,7 @@ DESIRED = re.compile(r"(?<=[^\W\d])(?:[_ ][Dd]es|Des)(?=\s*(?:$|[\\(\[]))")  # l
 AXIS = re.compile(r"(?<![a-z])i[_ .]?s?[_ .]?(alpha|beta|d|q)(?![a-z])|(?:current|strom)[_ .]?(d|q)(?![a-z])")
 
 
+@lru_cache(NAMES)
 def tokens(name: str) -> tuple[str, ...]:
     """Words and numbers of a name in lower case: "T_yokeLeft2" -> t, yoke, left, 2; "Twdg" -> t, wdg."""
     out: list[str] = []
@@ -74,6 +77,7 @@ def axis_of(name: str) -> str:
     return f"i{match[1] or match[2]}" if (match := AXIS.search(pointed)) else ""
 
 
+@lru_cache(NAMES)
 def quantities_of(name: str) -> list[str]:
     """Quantities whose words stand in a name; single letters count only in front, and a small p is a pressure."""
     name = CHANNEL.sub("", name)
@@ -100,6 +104,7 @@ def quantities_of(name: str) -> list[str]:
     return quantities or (["temperature" if letter[1] == "T" else "power"] if letter else [])
 
 
+@lru_cache(NAMES)
 def roles_of(name: str) -> list[Role]:
     """Roles whose words stand in a name, whole words first, then in their order; long words also inside others.
 
@@ -138,6 +143,7 @@ def is_stator(name: str) -> bool:
     return roles_of(name)[:1] == [Role.IRON] and not is_spoken(name, ROLES[Role.IRON] - OUTER)
 
 
+@lru_cache(NAMES)
 def is_setpoint(name: str) -> bool:
     """Is it what was asked for, rather than read?  SP1 is the first spot of a camera."""
     return bool(DESIRED.search(name)) or is_spoken(re.sub(r"(?i)\b[s]p ?\d+", " ", name), SETPOINT)

@@ -17,6 +17,7 @@ from measured.recordings.tables import GAP, USUAL
 
 ALIKE = 0.5  # of the columns of the narrower of two files are those of the other: one recorder's
 LEAST = 0.5  # of a recording, that has to be left where a column has gaps
+LOST = 6.0  # steps over five rows that are missing, as where a logger was asked in vain
 WHOLE_S = 10.0  # from where on a test is cut at whole seconds
 
 
@@ -50,7 +51,8 @@ class Recording:
         steps = [step for some in rows if (step := np.diff(t[some])).size]
         if not any(HOLD in note for note in self.source.notes):
             usual = [float(np.nanpercentile(step, USUAL, method="lower")) for step in steps]
-            return max([MAX_GAP_S, *(GAP * one for one in usual if one > EVEN * self.step_s)])
+            few = LOST * self.step_s * any(float(np.nanmax(step)) > EVEN * self.step_s for step in steps)
+            return max([MAX_GAP_S, few, *(GAP * one for one in usual if one > EVEN * self.step_s)])
         longest = max((float(np.nanmax(step)) for step in steps), default=0.0)
         return max(MAX_GAP_S, longest + 2.0 * self.step_s)  # the test is compared at instants of its own
 

@@ -295,7 +295,7 @@ def _sheet(draft: Draft, names: Mapping[str, str]) -> Iterator[str]:
         if value:
             yield f"{name} = {value:g}"
     if first.gap_s > MAX_GAP_S:
-        yield f"max_gap_s = {first.gap_s:g}   # rows are uneven, or written where something changes"
+        yield f"max_gap_s = {first.gap_s:g}   # rows are uneven or missing, or written where something changes"
     yield from _constants("inputs", draft.constants)
     yield from _constants("boundaries", draft.boundaries)
     if draft.squares:

@@ -133,6 +133,9 @@ OF_WHAT = "a share, by its unit alone: of what?"
 BY_READINGS = "a temperature, by its readings alone"
 FACTORS = ("current", "voltage", "torque", "speed")
 PASSES = "a product of other columns: it passes through"
+BACK = "of both signs: it passes through"
+OF_PHASE = "of one phase: all are in"
+OF_SUM = 0.02  # of the largest: meters of several phases round, and read one after another
 ONE_SIDE = "of one side of a converter, by its name: what is lost in it is the heat"
 NO_UNIT = "no unit"
 FUNCTION = "made of other columns"
@@ -245,7 +248,7 @@ def _read_as(source: Source, g: Guess, starts: Sequence[float], target: Target) 
 def _without_extremes(source: Source, every: list[Guess]) -> list[Guess]:
     """Without the largest and the least beside a reading, of which that would be a function, too; with a doubt at a
     temperature whose name is that of another and a word that nobody knows."""
-    words = {g.column: {*tokens(source.labels[g.column])} for g in every if g.used}
+    words = {g.column: {*tokens(source.labels[g.column])} for g in every if g.quantity}
     means = [words[c] - MEAN for c in words if not words[c] & EXTREME]
     parts = [words[g.column] for g in every if g.place and not of_edge(roles_of(source.labels[g.column]))]
     bases = [other - READ for other in parts if any(len(w) > 1 for w in other - READ - QUANTITY["temperature"])]
@@ -317,12 +320,24 @@ def _quickest(source: Source, every: list[Guess], target: Target) -> list[Guess]
 
 
 def _products(source: Source, every: list[Guess], target: Target) -> list[Guess]:
-    """Without powers that are products of what was recorded, where something turns: they pass through it."""
+    """Without powers of single phases beside their sum; where something turns without those that are products of what
+    was recorded, and without those of both signs: they pass through it."""
+    powers = {g.column: in_memory(source, g) for g in every if g.quantity == "power" and g.feeds}
+    feeds = {g.column: g.feeds for g in every}
+    stems = {c: [w for w in tokens(source.labels[c]) if len(w) > 1 and not w.isdigit()] for c in powers}
+    for total, whole in powers.items():
+        phases = [c for c in powers if feeds[c] == feeds[total] and stems[c] != stems[total] and not {*stems[c]} & LOSS]
+        phases = [c for c in phases if sum(stems[c] == stems[other] for other in phases) > 1]
+        slack = OF_SUM * np.nanmax(np.abs(whole))
+        if phases and np.allclose(sum(powers[c] for c in phases), whole, atol=slack, equal_nan=True):
+            every = [g.without(f"{OF_PHASE} '{total}'") if g.column in phases else g for g in every]
     factors = {g.column: source.numbers(g.column) for g in every if g.feeds and g.quantity in FACTORS}
     if not any(g.feeds and g.quantity == "speed" for g in every):
         return every
-    free = [g.column for g in every if g.quantity == "power" and g.feeds not in target.inputs]
-    products = {c for c in free if is_product(source.numbers(c), [*factors.values()])}
+    powers = {c: P for c, P in powers.items() if feeds[c] not in target.inputs}
+    products = {c for c in powers if is_product(source.numbers(c), [*factors.values()])}
+    both_ways = {c for c, P in powers.items() if min(-np.nanmin(P), np.nanmax(P)) > OF_SUM * np.nanmax(np.abs(P))}
+    every = [g.without(BACK) if g.column in both_ways else g for g in every]
     return [g.without(PASSES) if g.column in products else g for g in every]
 
 

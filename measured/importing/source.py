@@ -14,7 +14,7 @@ import numpy as np
 
 from geom.arrays import Array
 from geom.description.names import plain_header
-from geom.description.roles import Role
+from geom.description.roles import ROLE_WORDS, Role
 from geom.errors import InputError
 from measured.headers.cells import EMPTY, SWITCH, WITH_UNIT, is_clock, is_date, is_unit, number, split_unit, unit_of
 from measured.headers.rows import NO_RECORD, UNIT_NAMES, Layout, called, layout, transposed, trimmed
@@ -181,15 +181,20 @@ def over_room(source: Source) -> Source:
 
 
 def with_ends(source: Source) -> Source:
-    """With what came in and went out as the ends of the coolant, and a note, where its flow was recorded."""
-    words = {c: {*tokens(label)} for c, label in source.labels.items()}
-    ends = {c: w - QUANTITY["temperature"] for c, w in words.items() if w & QUANTITY["temperature"]}
+    """With what came in and went out as the ends of the coolant, and a note: where its flow was recorded, or, of air,
+    where the room was too."""
+    words = {c: {w for w in tokens(label) if not w.isdigit()} for c, label in source.labels.items()}
+    air = {c for c in words if words[c] & ROLE_WORDS[Role.AMBIENT]}
+    hot = [c for c in words if words[c] & QUANTITY["temperature"] or unit_of(source.units[c]) == "degC"]
+    ends = {c: words[c] - QUANTITY["temperature"] - ROLE_WORDS[Role.AMBIENT] for c in hot}
     ends = {c: end for c, end in ends.items() if end in ({"in"}, {"out"})}
+    roles = [roles_of(label) for c, label in source.labels.items() if c not in ends]
     flows = any("water_flow" in quantities_of(label) for label in source.labels.values())
-    has_coolant = any(Role.COOLANT in roles_of(label) for label in source.labels.values())
-    if len(ends) != 2 or not flows or has_coolant or not set.isdisjoint(*ends.values()):
+    beside = [Role.AMBIENT] in (of[:1] for of in roles) if ends.keys() <= air else flows and not ends.keys() & air
+    if len(ends) != 2 or not beside or any(Role.COOLANT in of for of in roles) or not set.isdisjoint(*ends.values()):
         return source
-    note = f"{source.file.name}: {' and '.join(map(repr, ends))} are taken as those of the flow beside them"
+    what = "the air that cools, beside a room" if ends.keys() <= air else "the flow beside them"
+    note = f"{source.file.name}: {' and '.join(map(repr, ends))} are taken as those of {what}"
     labels = {**source.labels} | {c: f"coolant {''.join(end)}" for c, end in ends.items()}
     return replace(source, labels=labels, notes=(*source.notes, note))
 
@@ -240,6 +245,8 @@ def _signals(sheet: str, plan: Layout, rows: Sequence[Sequence[Any]]) -> list[st
 def _cells(plan: Layout, rows: Sequence[Sequence[Any]]) -> list[list[Any]]:
     """Columns of a worksheet."""
     body = [row for row in rows[plan.first :] if any(c is not None and str(c).strip() for c in row)]
+    while body and not any(number(c) == number(c) or is_clock(c) for c in body[-1]):
+        body.pop()  # remarks and signatures
     return [[row[j] if j < len(row) else None for row in body] for j in range(plan.width)]
 
 

@@ -16,7 +16,7 @@ from typing import Any, cast
 
 from geom.errors import InputError
 from measured.headers.cells import in_thousands, is_date, is_reading, number
-from measured.headers.rows import SAMPLE, Layout, layout, transposed
+from measured.headers.rows import NO_RECORD, SAMPLE, Layout, layout, transposed
 from measured.headers.words import CLOCKS, IDEOGRAPHS, QUANTITY, ROLES
 from measured.recordings.csv_file import BLOCK, Body, chunks, shared
 from measured.recordings.data_table import PIECE
@@ -63,6 +63,8 @@ STAMP = re.compile(
     rf"^(?:[A-Z]+:\w*:|(?={_DAY}[-@])|(?={_DAY} {_TIME}{_DASH}))({_DAY})[-@ ](\d{{1,2}}:\d\d:)(\d+)([.\d]*)({_DASH})?",
     re.MULTILINE,
 )
+FRAME = re.compile(r"(?m)(?:[ \t]+[\dA-Fa-f]{2}){4,8}[ \t\r]*$")  # of CAN: its bytes
+HEXADECIMAL = re.compile(r"\b(?:0[\dA-Fa-f]|\d?[A-Fa-f][\dA-Fa-f]?)\b")
 REMARK = re.compile(r"^#[^,;\t\n]*[^,;\s]", re.MULTILINE)  # that may come again between the rows
 FORTRAN = re.compile(r"(?<=[.\d]\d)[Dd](?=[-+]\d\d\b)")  # 2.4D+01
 KEYED = re.compile(r"\s*([^\W\d][^:=,;\t]*?)\s*[:=]\s*(\S.*)")
@@ -105,6 +107,10 @@ def text_table(file: Path) -> tuple[Layout, Columns, list[str], float | None]:
     if again := {r for r, n in Counter(REMARK.findall(start)).items() if n > 2 and re.search(r"[,;\t]", start)}:
         lines = lines.edited(lambda line: "" if line.strip() in again else line)
         start = "".join(itertools.islice(lines, SAMPLE_LINES))[:10_000]
+    frames = [m[0] for m in FRAME.finditer(start) if HEXADECIMAL.search(m[0])]
+    if 2 * len(frames) > start.count("\n"):
+        right = "the signals in them by name, as the program that recorded the bus writes them: CSV or .mf4"
+        raise InputError(f"its rows are frames of a bus, which have no names: {NO_RECORD}", str(file), right)
     if 3 * sum(not line.strip() for line in start.splitlines()) > start.count("\n"):  # between every two rows
         lines = lines.edited(lambda line: line if line.strip() else "")
     if len({point[1] for point in POINT.finditer(start)}) == 1:
@@ -364,11 +370,9 @@ def encoding_of(parts: Callable[[], Iterable[bytes]], file: Path) -> str:
         if i == 0 and (encoding := _wide(part)):
             return encoding
         if b"\0" in part:
-            raise InputError(
-                "holds zero bytes, so it is not text: it is not a record",
-                str(file),
-                "CSV or other text, .xlsx, .tdms, .mf4, .parquet or .mat",
-            )
+            what = "is packed, as a spreadsheet .ods is" if part[:2] == b"PK" else "holds zero bytes"
+            right = "CSV or other text, .xlsx, .tdms, .mf4, .parquet or .mat"
+            raise InputError(f"{what}, so it is not text: {NO_RECORD}", str(file), right)
         try:
             decode(part, not part) if utf8 else None
         except UnicodeDecodeError:

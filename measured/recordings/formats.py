@@ -303,7 +303,8 @@ def matlab_variables(file: Path) -> dict[str, Any]:
 
 def _mat(file: Path) -> Contents:
     """Vectors of a MATLAB file, alone or in structs, and columns of its matrices; those of the commonest length."""
-    paths = dict(_vectors(matlab_variables(file)))
+    variables = matlab_variables(file)
+    paths = dict(_vectors(variables))
     sizes = Counter(len(v) for v in paths.values() if len(v) > 2)
     if not sizes:
         right = "columns of numbers; the table saved as CSV"
@@ -314,9 +315,21 @@ def _mat(file: Path) -> Contents:
     check_shape(rows, len(columns), file)
     last = Counter(path[-1] for path in columns)
     names = [path[-1] if last[path[-1]] == 1 else ".".join(path) for path in columns]
+    texts = dict(_texts(variables))
+    units = {name: text for name, path in zip(names, columns, strict=True) if (text := texts.get(path[-1]))}
     return zip(names, columns.values(), strict=True), {
-        "notes": (f"{file.name}: left out for their length: {', '.join(other[:9])}",) * bool(other)
+        "units": units,
+        "notes": (f"{file.name}: left out for their length: {', '.join(other[:9])}",) * bool(other),
     }
+
+
+def _texts(one: Any, name: str = "") -> Iterator[tuple[str, str]]:
+    """Words by their names, as in a struct of units beside that of the readings."""
+    if isinstance(one, Mapping):
+        for key, inside in one.items():
+            yield from _texts(inside, str(key))
+    elif isinstance(one, str) and one.strip():
+        yield name, one.strip()
 
 
 def _unpacked(file: Path, head: str) -> Iterator[int]:

@@ -1,6 +1,6 @@
 """Files as benches, controllers and CAN tools write them: runs in one file, ratios as units, powers of parts."""
 
-from datetime import datetime, timedelta
+from datetime import datetime, time, timedelta
 
 import numpy as np
 import openpyxl
@@ -10,7 +10,7 @@ from geom.description.roles import Role
 from geom.errors import InputError
 from measured.headers.cells import split_unit
 from measured.headers.rows import layout
-from measured.headers.words import is_setpoint, roles_of
+from measured.headers.words import is_setpoint, quantities_of, roles_of
 from measured.importing.aligned import Recording, longest_part
 from measured.importing.case_files import read_runs
 from measured.importing.guess import guesses
@@ -41,6 +41,8 @@ def read(tmp_path, **columns):
         ("铁芯温度", Role.IRON),
         ("鉄心温度", Role.IRON),
         ("T induit", Role.ROTOR),
+        ("T_VL", Role.COOLANT),
+        ("tRL_Pack", Role.COOLANT),
     ],
 )
 def test_parts_by_what_is_named_beside_the_stator_and_without_accents(name, role):
@@ -58,6 +60,8 @@ def test_parts_by_what_is_named_beside_the_stator_and_without_accents(name, role
         ("Torque [N.mm]", "Torque", "mN*m"),
         ("mdot_kg_h", "mdot", "kg/h"),
         ("t_s", "t", "s"),
+        ("Speed [r/s]", "Speed", "Hz"),
+        ("I_U [Aef]", "I_U", "A"),
     ],
 )
 def test_a_ratio_at_the_end_of_a_name_is_its_unit(header, name, unit):
@@ -67,6 +71,13 @@ def test_a_ratio_at_the_end_of_a_name_is_its_unit(header, name, unit):
 @pytest.mark.parametrize(("name", "asked"), [("trqEM_Des", True), ("n_des [rpm]", True), ("T_des_bobines", False)])
 def test_what_is_desired_is_asked_for(name, asked):
     assert is_setpoint(name) == asked
+
+
+@pytest.mark.parametrize(
+    ("name", "quantity"), [("Vdot_fluid", "water_flow"), ("P1_Prad_silnika", "current"), ("冷却水流量", "water_flow")]
+)
+def test_quantities_without_accents_and_units(name, quantity):
+    assert quantities_of(name) == [quantity]
 
 
 def test_a_row_of_units_stands_over_that_of_the_clock():
@@ -149,6 +160,20 @@ def test_where_an_input_is_unknown_for_long_the_longest_part_is_the_test(tmp_pat
     window, notes = longest_part(record, 120.0, ["I [A]"])
     assert window == (5000.0, 11800.0)
     assert "no 'I [A]' in a.csv from 3000 s to 5000 s" in notes[0]
+
+
+def test_times_of_day_over_remarks_and_a_unit_alone_under_its_quantity(tmp_path):
+    """A list by hand, whose last rows are signatures."""
+    book = openpyxl.Workbook()
+    head = [["Time", "Voltage", None, None, "Current", None, None, "Input", "Speed", "Amb", "Coil"]]
+    head += [["(hrs)", "R-Y", "Y-B", "B-R", "R", "Y", "B", "(kW)", "(rpm)", "(°C)", "(°C)"]]
+    rows = [[time(10 + k // 2, 30 * (k % 2)), 415, 414, 416, 5, 4, 6, 2.5, 1480, 30.0, 30.0 + k] for k in range(9)]
+    for row in (*head, *rows, [], ["Rise by resistance 80 K"], ["Tested by", None, "Witness"]):
+        book.active.append(row)
+    book.save(tmp_path / "a.xlsx")
+    [(source, clock)] = read_runs(tmp_path / "a.xlsx")
+    assert clock.seconds == pytest.approx(1800.0 * np.arange(9))
+    assert "Input (kW)" in source.cells
 
 
 def test_sheets_with_the_same_columns_are_tests_and_others_are_named(tmp_path):

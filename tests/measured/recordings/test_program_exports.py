@@ -6,11 +6,13 @@ import numpy as np
 import pytest
 from logger_formats import signals
 from nptdms import ChannelObject, TdmsWriter
+from scipy.io import savemat
 
 from geom.description.roles import Role
 from geom.errors import InputError
 from measured.headers.cells import split_unit
 from measured.headers.words import quantities_of, roles_of, tokens
+from measured.importing.aligned import Recording
 from measured.importing.case_files import read_runs
 from measured.importing.guess import (
     AS_TORQUE,
@@ -379,3 +381,79 @@ def test_a_unit_may_stand_before_a_name_or_be_of_the_old_world(tmp_path):
 def test_two_machines_in_one_table_are_doubted(tmp_path):
     found, _ = read(tmp_path, "t [s],Motor 1 coil [C],Motor 2 coil [C],Air [C],I [A]\n" + body(T, W, H, A, J))
     assert [NUMBERED_MACHINE in g.doubt for g in found.values()] == [True, True, False, False]
+
+
+def test_the_power_of_a_machine_is_the_sum_of_its_phases(tmp_path):
+    """Copper and iron are no phases, and their sum is no reading more."""
+    P = 400.0 + 90.0 * J
+    phases = body(T, W, A, 0.33 * P, 0.34 * P, 0.33 * P, P)
+    found, _ = read(tmp_path, "t [s],T coil [C],T air [C],P1 [W],P2 [W],P3 [W],Power in [W]\n" + phases)
+    assert [c for c, g in found.items() if g.feeds] == ["Power in [W]"]
+    found, _ = read(
+        tmp_path, "t [s],T coil [C],T air [C],Pcu loss [W],Pfe loss [W],Total loss [W]\n" + body(T, W, A, J, N, J + N)
+    )
+    assert {"Pcu loss [W]", "Pfe loss [W]"} <= goes(found).keys()
+
+
+@pytest.mark.parametrize(("sign", "used"), [(1.0, True), (-1.0, True), (np.sign(T - 100.0), False)])
+def test_a_power_of_both_signs_passes_through(tmp_path, sign, used):
+    """One that is negative throughout is a clamp the wrong way round, of which compare tells."""
+    found, _ = read(
+        tmp_path, "t [s],T coil [C],T air [C],Power [W],Speed [rpm]\n" + body(T, W, A, sign * (9 * J + 3), N)
+    )
+    assert found["Power [W]"].used == used
+
+
+@pytest.mark.parametrize("room", ["Room [C]", ""])
+def test_air_that_enters_and_leaves_cools_beside_a_room(tmp_path, room):
+    head = "t [s],T coil [C],1 <Air in> [C],2 <Air out> [C],I [A]" + f",{room}" * bool(room)
+    found, _ = read(tmp_path, head + "\n" + body(T, W, A, A + 0.2 * (H - A), J, *[A] * bool(room)))
+    assert found["1 <Air in> [C]"].place == ("coolant" if room else "ambient")
+    assert not room or found[room].place == "ambient"
+
+
+def test_the_least_and_the_largest_beside_a_mean_are_no_readings_of_their_own(tmp_path):
+    """The mean of both would be a function of them."""
+    names = [f"{name}/{kind} [C]" for name in ("T coil", "T Cell") for kind in ("AVE", "MIN", "MAX")]
+    columns = [v + d for v in (W, A) for d in (0.0, -0.1, 0.1)]
+    found, _ = read(tmp_path, ",".join(["t [s]", *names, "I [A]"]) + "\n" + body(T, *columns, J))
+    assert goes(found) == {names[0]: "coil-ave", names[3]: "ambient", "I [A]": "current_A"}
+
+
+@pytest.mark.parametrize(
+    ("content", "cause"),
+    [
+        (
+            "".join(f"{k + 1:5d} {20 * k}.013 DT 0181 Rx - 8 1A 0{k} FF 00 2C 00 7B 00\n" for k in range(9)),
+            "frames of a bus",
+        ),
+        ("PK\3\4\0\0", "is packed, as a spreadsheet .ods"),
+    ],
+)
+def test_what_holds_no_table_is_refused_by_what_it_is(tmp_path, content, cause):
+    (tmp_path / "a.trc").write_text(content)
+    with pytest.raises(InputError, match=cause):
+        read_runs(tmp_path / "a.trc")
+
+
+def test_whole_numbers_between_blanks_are_no_frames(tmp_path):
+    (tmp_path / "a.txt").write_text("".join(f"{5 * k} 22 {20 + k} 21 30 10\n" for k in range(30)))
+    assert len(read_runs(tmp_path / "a.txt")[0][0].cells) == 6
+
+
+def test_a_struct_of_units_beside_that_of_readings(tmp_path):
+    units = {"T_coil": "degC", "T_lab": "degC", "n": "rpm", "time": "s"}
+    savemat(tmp_path / "a.mat", {"data": {"time": T, "T_coil": W, "T_lab": A, "n": N}, "units": units})
+    [(source, clock)] = read_runs(tmp_path / "a.mat")
+    assert (clock.words, source.units) == ("numbers in s", units)
+
+
+def test_a_few_rows_that_are_lost_are_no_end_of_a_test(tmp_path):
+    """Of 30 s each; of ten it would be one."""
+    lines = body(30.0 * np.arange(T.size), W, A, J).splitlines()
+    for lost, whole in ((4, True), (20, False)):
+        rows = [*lines[:40], *(f"{line.partition(',')[0]},,," for line in lines[40 : 40 + lost]), *lines[40 + lost :]]
+        (tmp_path / "a.csv").write_text("\n".join(["t [s],T coil [C],T air [C],I [A]", *rows]) + "\n")
+        [(source, clock)] = read_runs(tmp_path / "a.csv")
+        every = guesses(source, clock.columns, first_model([(source, clock)], {}).target)
+        assert (Recording(source, clock, every).gap_s >= 30.0 * (lost + 1)) == whole
