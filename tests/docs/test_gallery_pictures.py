@@ -28,7 +28,8 @@ def test_computed_and_expected_are_drawn_over_each_other(drawing, tmp_path, comp
     (ax,) = drawing.drawn(left, tmp_path / "a.png").axes
     assert len(ax.lines) == lines
     assert [text.get_text() for text in ax.get_legend().get_texts()] == ["computed", "expected"]
-    assert Image.open(tmp_path / "a.png").size == (960, 450)
+    with Image.open(tmp_path / "a.png") as picture:
+        assert picture.size == (960, 450)
 
 
 def test_a_number_is_drawn_with_its_digits(drawing):

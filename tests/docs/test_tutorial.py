@@ -42,12 +42,17 @@ def test_what_a_command_prints_stands_under_it_and_fits_a_screen(commands, print
     assert len(lines) <= count * (LINES + 5), "a sentence of some lines, and at most 25 after it"
 
 
+def written_into(picture, chunk):
+    with Image.open(tutorial.ROOT / "docs/images" / picture) as drawn:
+        return drawn.info[chunk]
+
+
 @pytest.mark.parametrize(
     ("picture", "chunk"), [("road-test.png", "words"), ("road-test.gif", "comment"), ("workbench-added.png", "errors")]
 )
 def test_pictures_tell_the_errors_of_the_text(picture, chunk):
     """What a picture's script wrote into it: of the held-out test, before and after."""
-    words = Image.open(tutorial.ROOT / "docs/images" / picture).info[chunk]
+    words = written_into(picture, chunk)
     before, after = re.findall(r"\d+\.\d+(?=\D*)", words if isinstance(words, str) else words.decode())[-2:]
     assert f"held-out tests {before} -> {after} K" in PAGE
     readme = (tutorial.ROOT / "README.md").read_text(encoding="utf-8")
@@ -56,8 +61,7 @@ def test_pictures_tell_the_errors_of_the_text(picture, chunk):
 
 def test_every_picture_of_the_workbench_is_of_one_walk():
     """The model before the step misses what the last one says it missed."""
-    folder = tutorial.ROOT / "docs/images"
-    texts = [Image.open(folder / f"workbench-{name}.png").info["errors"] for name in ("sensor", "diagnosed", "added")]
+    texts = [written_into(f"workbench-{name}.png", "errors") for name in ("sensor", "diagnosed", "added")]
     start, asked, added = (re.findall(r"\d+\.\d+", text) for text in texts)
     assert start == asked
     assert start[-1] == added[-2]
