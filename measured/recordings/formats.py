@@ -293,7 +293,8 @@ def matlab_variables(file: Path) -> dict[str, Any]:
     """All that a MATLAB file holds, by name; InputError for a version or a size that is not read."""
     from scipy.io import loadmat
 
-    start = file.open("rb").read(128)
+    with file.open("rb") as stream:
+        start = stream.read(128)
     if start.startswith(b"MATLAB 7.3"):
         raise InputError("is a MATLAB file of version 7.3", str(file), "save(..., '-v7'), or the table saved as CSV")
     if start.startswith(b"MATLAB 5.0"):  # older ones are not packed

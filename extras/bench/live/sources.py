@@ -97,12 +97,13 @@ def _tcp(where: str, host: str, port: int) -> Source:
     link.settimeout(None)
     stream: IO[str] = link.makefile("r", encoding="utf-8", newline="\n")
     source.send = lambda line: link.sendall(f"{line}\n".encode())
-    source.start(lambda: _until_closed(stream))
+    source.start(lambda: _until_closed(link, stream))
     return source
 
 
-def _until_closed(stream: IO[str]) -> Iterator[str]:
-    yield from iter(lambda: stream.readline(BYTES), "")
+def _until_closed(link: socket.socket, stream: IO[str]) -> Iterator[str]:
+    with link, stream:
+        yield from iter(lambda: stream.readline(BYTES), "")
     raise ConnectionResetError("closed by the other side")
 
 

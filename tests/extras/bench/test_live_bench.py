@@ -327,8 +327,6 @@ def test_rows_come_as_cells_and_as_objects():
         parser.row("{")
 
 
-# A source holds its line as long as its process: nothing closes it before
-@pytest.mark.filterwarnings("ignore::pytest.PytestUnraisableExceptionWarning")
 def test_a_line_that_breaks_is_said(case, steering):
     with socket.create_server(("127.0.0.1", 0)) as server:
         port = server.getsockname()[1]
