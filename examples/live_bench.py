@@ -34,7 +34,7 @@ try:
     run = subprocess.run([sys.executable, "-m", "thermoscope", *command], cwd=ROOT, capture_output=True, text=True)
 finally:
     motor.terminate()
-    motor.wait()
+    motor.communicate()  # its last words, and its end
 document = json.loads(run.stdout)
 error = float(not document["decided"] or document["odds"][0]["cause"] != HIDDEN)
 print(f"after {document['minutes']:.0f} min: {document['stop']}; odds over time in {out / 'live-odds.png'}")
