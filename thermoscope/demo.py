@@ -55,20 +55,17 @@ def demo(
     target: Json = None,
 ) -> int:
     """The whole loop on the shipped case with a hidden effect: the error before and after."""
-    start, beside = time.monotonic(), ThreadPoolExecutor(1)
+    start = time.monotonic()
     case = fresh(out)
     headline("1  The machine: solids, mesh, field, network")
     with limited_lines(SHORT):
         build_machine(str(read_settings(case).machine), out / "machine", None, None)
-        folder = open_demo(case)
-        errors = beside.submit(mesh_errors, folder)  # no fit moves them, and each fit leaves half of two cores idle
-        picture(machine_picture(folder, out), "the parts and their names")
+        picture(machine_picture(case, out), "the parts and their names")
         headline("2  Calibrated on the brake stand")
         calibrate(str(case), True, None)
     folder = open_demo(case)
-    knob = beside.submit(old_way, folder.case)  # run after run: it needs one core
+    knob = ThreadPoolExecutor().submit(old_way, folder.case)  # run after run: it needs one core
     headline("3  Held against the road")
-    errors.result()
     with limited_lines(SHORT):
         stages = [Stage("calibrated on the stand", print_comparison(folder))]
         picture(misses(folder, out), "after an hour on the road, what the model misses")
@@ -147,9 +144,9 @@ def picture(file: Path | None, words: str) -> None:
         say(f"Picture: {file}: {words}")
 
 
-def machine_picture(folder: Folder, out: Path) -> Path | None:
+def machine_picture(case: Path, out: Path) -> Path | None:
     """The parts, each with its name."""
-    s = Subject(folder, lambda message: None)
+    s = Subject(open_demo(case), lambda message: None)
     return _picture(out / "1-machine.png", lambda png: viz.regions(s.nodes, png=png).close())
 
 
@@ -191,15 +188,6 @@ def fresh(out: Path) -> Path:
 
 def headline(words: str) -> None:
     say(f"=== {words} ===")
-
-
-def mesh_errors(folder: Folder) -> None:
-    """Errors of mesh and condensation where the sensors are: into the store, where each comparison finds them."""
-    from lumped.build.rated_errors import cached_errors
-    from validation.comparison.error_budget import monitored_places
-
-    if folder.built is not None:
-        cached_errors(folder.built, monitored_places(folder))
 
 
 def old_way(case: "Case") -> "OneFactorFit":
