@@ -63,7 +63,7 @@ STAMP = re.compile(
     rf"^(?:[A-Z]+:\w*:|(?={_DAY}[-@])|(?={_DAY} {_TIME}{_DASH}))({_DAY})[-@ ](\d{{1,2}}:\d\d:)(\d+)([.\d]*)({_DASH})?",
     re.MULTILINE,
 )
-FRAME = re.compile(r"(?m)(?:[ \t]+[\dA-Fa-f]{2}){4,8}[ \t\r]*$")  # of CAN: its bytes
+FRAME = re.compile(r"(?m)(?<![ \t])(?:[ \t]+[\dA-Fa-f]{2}){4,8}[ \t\r]*$")  # of CAN: its bytes, from a first blank on
 HEXADECIMAL = re.compile(r"\b(?:0[\dA-Fa-f]|\d?[A-Fa-f][\dA-Fa-f]?)\b")
 REMARK = re.compile(r"^#[^,;\t\n]*[^,;\s]", re.MULTILINE)  # that may come again between the rows
 FORTRAN = re.compile(r"(?<=[.\d]\d)[Dd](?=[-+]\d\d\b)")  # 2.4D+01
