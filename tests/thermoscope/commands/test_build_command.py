@@ -80,7 +80,9 @@ def test_build_writes_solids_mesh_and_a_table_of_every_part(built):
         assert row["solid_volume_m3"] == pytest.approx(row["volume_m3"], rel=0.01), part.name
         assert sum(row["faces_m2"].values()) + sum(row["contacts_m2"].values()) > 0
         assert (folder / f"{part.name}.stl").stat().st_size > 0
-    assert all(Image.open(picture).size == (1280, 800) for picture in document["pictures"])
+    for path in document["pictures"]:
+        with Image.open(path) as picture:
+            assert picture.size == (1280, 800)
     assert len(document["pictures"]) == (0 if machine.family == "series-dc" else 2)
     assert {"small.step", "small.step.toml", "small.glb", "small.vtu"} < {path.name for path in folder.iterdir()}
     assert read_vtu(folder / "small.vtu").parts == tuple(part.name for part in machine.parts)
