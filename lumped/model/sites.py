@@ -58,7 +58,7 @@ def faces(network: Network, part: str, fluid: str) -> list[Place]:
 
 
 def touches(network: Network, place: str, other: str) -> bool:
-    return any({place, other} == set(link.places) for link in network.links)
+    return any({place, other} == set(link.places) for link in standing_links(network))
 
 
 def washed(network: Network, fluid: str) -> list[str]:
@@ -167,8 +167,8 @@ def cell(network: Network, place: str) -> bool:
 
 
 def edges(network: Network) -> Iterator[tuple[str, str]]:
-    """Pairs of parts, fluids and boundaries that a link joins."""
-    for link in network.links:
+    """Pairs of parts, fluids and boundaries that a link joins, but for those of effects on trial."""
+    for link in standing_links(network):
         a, b = (part_of(network, p) for p in link.places)
         yield (a, b)
 

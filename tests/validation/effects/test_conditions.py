@@ -10,6 +10,7 @@ from two_bodies import LID, OPEN, bench, two_bodies
 
 from geom.errors import InputError
 from lumped.integration.simulate import Record, simulate
+from lumped.model.sites import neighbours, washed
 from lumped.sources.loss_laws import PowerLoss
 from lumped.transfer.laws import InputPower
 from measured.case import Case, Channel, Model, Test
@@ -17,11 +18,11 @@ from validation import diagnose
 from validation.comparison.predict import predict
 from validation.effects import Scene, effect, extended, kinds
 from validation.effects.during import During
-from validation.effects.registry import with_effects
+from validation.effects.registry import catalogue, with_effects
 from validation.effects.streams.flow import flows
 from validation.effects.time_window import Event, checked, event, holds, share
 from validation.inference.columns import effect_columns
-from validation.inference.conditions import tangent_worth
+from validation.inference.conditions import tangent_worth, temporary_effects
 from validation.inference.events import event_grams, instants_around, one_test, predicted_repeats, step_scores
 from validation.inference.evidence import calibrated_case, candidates, scored
 from validation.inference.missing_heat import scan_heat
@@ -337,6 +338,22 @@ def test_what_strays_little_for_a_while_is_weighed_by_its_evidence():
     size = fit_score(fit, parts).amplitude[0]
     assert max(np.max(np.abs(size * s.J[:, -1])) / s.weight for s in parts) < 3.0
     assert row.worth > 0.0
+
+
+def test_an_effect_on_trial_joins_nothing():
+    """Where others can be does not depend on what else is asked about."""
+    net = machine()
+    larger = extended(net, catalogue(Scene(net)))
+    assert neighbours(larger) == neighbours(net)
+    assert [washed(larger, b) for b in net.boundaries] == [washed(net, b) for b in net.boundaries]
+
+
+def test_two_stretches_of_one_effect_both_act():
+    net = machine()
+    for base in temporary_effects(Scene(net)):
+        both = [During.of(base, Event.of({"day": [span]}).name) for span in ((60.0, 90.0), (120.0, 150.0))]
+        targets = [len(p.targets) for p in extended(net, both).parameters[-2:]]
+        assert targets == [len(extended(net, [e]).parameters[-1].targets) for e in both]
 
 
 def test_every_stretch_of_a_flow_copies_its_films_and_streams_once():
