@@ -157,7 +157,7 @@ def fold_prediction(fit: Fit, fold: Fold, fixed: Mapping[str, float], effects: C
     there = segments(fit.network, fold.predicted, {**values, **likely})
 
     def nats(noise: Noise) -> float:  # its rows are made anew: kept for every fold, they would fill the memory
-        return _log_density(replace(fit, noise=noise), _rows(fit, fold.fitted), _rows(fit, fold.predicted), there)
+        return _log_density(replace(fit, noise=noise), _rows(fit, fold.fitted), there)
 
     values |= {name: likely[name] for name in causes.names} | dict.fromkeys(others.names, 0.0)
     values |= fitted(machine, fit.theta[rows], FOLLOWED.robust(parts), [replace(s, J=s.J[:, rows]) for s in parts])
@@ -185,9 +185,7 @@ def _rows(fit: Fit, tests: Sequence[Test]) -> list[tuple[Segment, Array]]:
     return out
 
 
-def _log_density(
-    fit: Fit, learnt: Sequence[tuple[Segment, Array]], unseen: Sequence[tuple[Segment, Array]], parts: Sequence[Segment]
-) -> float:
+def _log_density(fit: Fit, learnt: Sequence[tuple[Segment, Array]], unseen: Sequence[Segment]) -> float:
     """Log density of unseen readings: noise, model error, and what the learnt ones leave open of the parameters.
 
     By the determinant lemma and Woodbury: with X the whitened columns of parameters and doubts and H their curvature,
@@ -199,8 +197,10 @@ def _log_density(
         X = fit.noise.whiten(s, np.column_stack([s.J, D]))
         H += X.T @ X
     more, pull, square, noise = H.copy(), np.zeros(len(H)), 0.0, 0.0
-    for (s, D), now in zip(unseen, parts, strict=True):
-        X = fit.noise.whiten(s, np.column_stack([s.J, D, now.r]))
+    columns = {(x.test, x.channel): (x, np.hstack([x.J, fit.error.of(x)]) if fit.error else x.J) for x in fit.parts}
+    for s in unseen:  # a fault may have left a hole in their readings
+        whole, J = columns[s.test, s.channel]
+        X = fit.noise.whiten(s, np.column_stack([*(np.interp(s.time, whole.time, x) for x in J.T), s.r]))
         more += X[:, :-1].T @ X[:, :-1]
         pull += X[:, :-1].T @ X[:, -1]
         square += float(X[:, -1] @ X[:, -1])
@@ -270,13 +270,14 @@ def bound_check(fit: Fit, name: str) -> Check:
     """
     k = fit.unknowns.names.index(name)
     p, value = fit.unknowns.parameters[k], to_value(fit.unknowns.parameters[k], float(fit.theta[k]))
-    inside = f"{name} {value:.3g} lies between {p.low:.5g} and {p.high:.5g} {p.unit}"
+    unit = "" if p.unit == "1" else f" {p.unit}"
+    inside = f"{name} {value:.3g} lies between {p.low:.5g} and {p.high:.5g}{unit}"
     if fit.at_bound[k] and value == p.neutral:
-        return Check("bounds", False, value, p.high, f"{name} is fitted to {value:.3g} {p.unit}: it is not there")
+        return Check("bounds", False, value, p.high, f"{name} is fitted to {value:.3g}{unit}: it is not there")
     if fit.at_bound[k] and is_misread(effect(name), p):
-        words = f"{name} would have to be more than {value:.3g} {p.unit}: nothing is read so far off"
+        words = f"{name} would have to be more than {value:.3g}{unit}: nothing is read so far off"
         return Check("bounds", False, value, p.high, words)
-    at = f"{name} sticks to the bound of what is physical, {value:.3g} {p.unit}: something else may take part"
+    at = f"{name} sticks to the bound of what is physical, {value:.3g}{unit}: something else may take part"
     return Check("bounds", True, value, p.high, at if fit.at_bound[k] else inside)
 
 

@@ -12,6 +12,7 @@ from validation.calibration.model_error import machine_rise
 from validation.comparison.linearisation import Segment, allowed
 from validation.consistency import doubts_check, free_network_check, persistence_check, record_errors, refit_check
 from validation.diagnosis import infer
+from validation.effects.time_window import Event
 from validation.inference.decide import Decision, consistent_decision
 from validation.inference.result import Check, Remainder
 from validation.inference.say import OFF, remainder
@@ -56,6 +57,12 @@ def found():
 @pytest.fixture(scope="module")
 def posterior():
     return infer(moved_probe(0.5), scope=Scope(without=SLIPS))
+
+
+def test_a_probe_that_was_loose_for_a_while_is_judged_by_what_it_read_before_and_after():
+    span = Event.of({"dusk": [(1000.0, 3000.0)]})
+    done = add(moved_probe(0.5), f"sensor.loose@core in {span.name}")
+    assert {c.check for c in done.checks} >= {"left out", "no change"}
 
 
 @pytest.mark.parametrize("share", [1.0, 0.2])
