@@ -74,9 +74,10 @@ def learn_network(case: Case, first: FirstNetwork) -> FirstNetwork:
     spreads = [_spread(values) for values in zip(*(part for part, _ in parts), strict=True)]
     candidates = zip(table.candidates, theta, follows, spreads, strict=True)
     terms = [FirstTerm(ends, float(size), of, spread) for (ends, _), size, of, spread in candidates if size > 0.0]
-    capacities = {node: (float(C[n]), _spread([part[n] for _, part in parts])) for n, node in enumerate(table.nodes)}
+    sizes = {node: (float(C[n]), _spread([part[n] for _, part in parts])) for n, node in enumerate(table.nodes)}
+    capacities = {**first.capacities, **sizes}  # also of what no thermometer can have shown, such as tenths of a degree
     length = max(r.time[-1] - r.time[0] for fold in folds for r in fold)
-    alone = [node for node in table.nodes if not _reaches(node, terms, first.boundaries)]
+    alone = [node for node in capacities if not _reaches(node, terms, first.boundaries)]
     terms += [FirstTerm((node, first.boundaries[0]), capacities[node][0] / (SLOW * length)) for node in alone]
     odd = {r.name for fold, counts in zip(folds, table.credit, strict=True) for r in fold if counts < ODD_COUNTS}
     learnt = [t.name for t in case.usable if t.name not in odd]

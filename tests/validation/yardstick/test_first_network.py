@@ -7,6 +7,7 @@ import pytest
 from two_bodies import bench
 
 from measured.importing.starter import FirstNetwork
+from measured.sensors.faults import broken_channels
 from validation.yardstick.first_network import learn_network
 from validation.yardstick.yardstick import free_network_terms
 
@@ -48,6 +49,18 @@ def test_links_and_losses_are_those_of_the_machine(learnt):
 def test_capacities_are_those_of_the_machine(learnt):
     assert learnt.capacities["body"][0] == pytest.approx(4000.0, rel=0.05)
     assert learnt.capacities["core"][0] == pytest.approx(1500.0, rel=0.1)
+
+
+def test_a_place_whose_sensor_is_plainly_broken_stays_in_the_network():
+    """Nothing is learnt from it; a case that has no such place could not be compared."""
+    case = bench(held=())
+    stuck = [replace(c, y=np.where(np.arange(c.y.size) > 20, 900.0, c.y)) for c in case.tests[0].channels[1:]]
+    tests = tuple(replace(t, channels=(t.channels[0], *stuck)) for t in case.tests)
+    assert broken_channels(tests)
+    first = replace(first_of(case), capacities=dict.fromkeys(("body", "core"), (3000.0, 1.0)))
+    learnt = learn_network(replace(case, tests=tests), first)
+    assert list(learnt.capacities) == ["body", "core"]
+    assert any("core" in t.ends and len(t.ends) == 2 for t in learnt.terms)
 
 
 def test_held_out_readings_change_nothing(case, learnt):
