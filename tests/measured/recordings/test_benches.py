@@ -8,9 +8,7 @@ import pytest
 
 from geom.description.roles import Role
 from geom.errors import InputError
-from measured.headers.cells import split_unit
 from measured.headers.rows import layout
-from measured.headers.words import is_setpoint, quantities_of, roles_of
 from measured.importing.aligned import Recording, longest_part
 from measured.importing.case_files import read_runs
 from measured.importing.guess import guesses
@@ -27,57 +25,6 @@ def read(tmp_path, **columns):
     lines = [",".join(columns), *(",".join(f"{v:g}" for v in row) for row in zip(*columns.values(), strict=True))]
     (tmp_path / "a.csv").write_text("\n".join(lines) + "\n")
     return tmp_path / "a.csv"
-
-
-@pytest.mark.parametrize(
-    ("name", "role"),
-    [
-        ("stator_winding_temp", Role.WINDING),
-        ("EM_StatorTemp", Role.IRON),
-        ("T_w_in", Role.COOLANT),
-        ("tCool_EmOut", Role.COOLANT),
-        ("DB10.Temp_Carcaca", Role.HOUSING),
-        ("Temp_Gehause", Role.HOUSING),
-        ("铁芯温度", Role.IRON),
-        ("鉄心温度", Role.IRON),
-        ("T induit", Role.ROTOR),
-        ("T_VL", Role.COOLANT),
-        ("tRL_Pack", Role.COOLANT),
-    ],
-)
-def test_parts_by_what_is_named_beside_the_stator_and_without_accents(name, role):
-    assert roles_of(name)[0] == role
-
-
-@pytest.mark.parametrize(
-    ("header", "name", "unit"),
-    [
-        ("shaft_speed_rad_s", "shaft_speed", "rad/s"),
-        ("flow_l_per_min", "flow", "l/min"),
-        ("flow_litres_per_minute", "flow", "l/min"),
-        ("speed_metres_per_sec", "speed", "m/s"),
-        ("Flow (liters/minute)", "Flow", "l/min"),
-        ("Torque [N.mm]", "Torque", "mN*m"),
-        ("mdot_kg_h", "mdot", "kg/h"),
-        ("t_s", "t", "s"),
-        ("Speed [r/s]", "Speed", "Hz"),
-        ("I_U [Aef]", "I_U", "A"),
-    ],
-)
-def test_a_ratio_at_the_end_of_a_name_is_its_unit(header, name, unit):
-    assert split_unit(header) == (name, unit)
-
-
-@pytest.mark.parametrize(("name", "asked"), [("trqEM_Des", True), ("n_des [rpm]", True), ("T_des_bobines", False)])
-def test_what_is_desired_is_asked_for(name, asked):
-    assert is_setpoint(name) == asked
-
-
-@pytest.mark.parametrize(
-    ("name", "quantity"), [("Vdot_fluid", "water_flow"), ("P1_Prad_silnika", "current"), ("冷却水流量", "water_flow")]
-)
-def test_quantities_without_accents_and_units(name, quantity):
-    assert quantities_of(name) == [quantity]
 
 
 def test_a_row_of_units_stands_over_that_of_the_clock():
@@ -248,17 +195,3 @@ def test_rises_beside_the_room_alone_are_temperatures(tmp_path, room, added):
     if added:
         assert source.numbers(f"Winding rise ΔT [K] + {room}") == pytest.approx(20 + 1.1 * T)
         assert f"'{room}' is added" in source.notes[-1]
-
-
-@pytest.mark.parametrize(
-    ("name", "roles"),
-    [
-        ("T_DE", [Role.BEARING]),
-        ("Temp. NDE", [Role.BEARING]),
-        ("T_AS", [Role.BEARING]),
-        ("frame DE", [Role.HOUSING]),
-        ("temp de culasse", []),
-    ],
-)
-def test_an_end_of_the_shaft_is_its_bearing(name, roles):
-    assert roles_of(name) == roles

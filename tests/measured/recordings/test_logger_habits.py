@@ -7,11 +7,8 @@ import tomllib
 import numpy as np
 import pytest
 
-from geom.description.roles import Role
 from geom.errors import InputError
 from lumped.model.quantities import INPUTS
-from measured.headers.cells import split_unit
-from measured.headers.words import roles_of
 from measured.importing.aligned import Recording, shift
 from measured.importing.case_files import read_runs
 from measured.importing.clock import clock_of
@@ -77,21 +74,6 @@ def test_registers_in_tenths_are_read_by_their_names(tmp_path):
     assert goes(found) == {"T_wdg_x10": "wdg", "T_hsg_x10": "hsg", "T_amb_x10": "ambient", "I [A]": "current_A"}
     g, source = found["T_wdg_x10"]
     assert in_memory(source, g) == pytest.approx(WARM["W"], abs=0.06)
-
-
-@pytest.mark.parametrize(
-    ("header", "name", "unit"),
-    [
-        ("Wicklung US", "Wicklung US", ""),
-        ("I_sek", "I_sek", ""),
-        ("T_wdg_min", "T_wdg_min", ""),
-        ("t_min", "t", "min"),
-        ("Частота вращения, об/мин", "Частота вращения", "rpm"),
-        ("Мощность, кВт", "Мощность", "kW"),
-    ],
-)
-def test_the_end_of_a_name_is_no_unit_of_time(header, name, unit):
-    assert split_unit(header) == (name, unit)
 
 
 def test_what_is_made_of_a_reading_and_a_current_before_the_inverter_give_way(tmp_path):
@@ -580,38 +562,6 @@ def test_a_labview_file_has_its_units_in_its_second_head_and_no_groups(tmp_path)
     )
     found, _ = read(tmp_path / "a.lvm")
     assert {c: g.unit for c, (g, _) in found.items()} == {"Qx oben": "degC", "Umgebung": "degC", "I_sek": "A"}
-
-
-@pytest.mark.parametrize(
-    ("name", "role"),
-    [
-        ("fTempSpindleNut", Role.BEARING),
-        ("Nut 3", Role.WINDING),
-        ("TEMP_STATOR_V1", Role.WINDING),
-        ("Stator", Role.IRON),
-        ("příruba", Role.END_SHIELD),
-        ("Hölje", Role.HOUSING),
-        ("axle", Role.SHAFT),
-        ("T polea", Role.SHAFT),
-        ("gearbox oil", None),
-        ("oil inlet", Role.COOLANT),
-        ("Bain d'huile", None),
-        ("T escobillas", Role.COMMUTATOR),
-        ("Olie boven", None),  # no oven
-        ("teplota okolia", Role.AMBIENT),
-        ("Korpus", Role.HOUSING),
-        ("코일 온도", Role.WINDING),
-        ("실내 온도", Role.AMBIENT),
-        ("T_Ruecklauf", Role.COOLANT),
-        ("T_lozysko", Role.BEARING),
-        ("kolnierz", Role.END_SHIELD),
-        ("EmTRtr_T", Role.ROTOR),
-        ("airtemp", Role.AMBIENT),
-        ("template", Role.TEST_BED),  # a plate, and no temperature
-    ],
-)
-def test_names_of_parts_in_the_words_of_other_shops(name, role):
-    assert next(iter(roles_of(name)), None) is role
 
 
 @pytest.mark.parametrize(

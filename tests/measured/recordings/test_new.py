@@ -15,7 +15,6 @@ from two_bodies import bench
 from geom.errors import InputError, MissingDependency
 from lumped.declarations.network import load_network
 from measured.doubt import USUAL
-from measured.headers.cells import number, split_unit
 from measured.importing.clock import clock_of
 from measured.importing.guess import guesses
 from measured.importing.source import read_source
@@ -206,23 +205,6 @@ def test_clocks(tmp_path, times, seconds):
     assert found.columns == ("Time",)
 
 
-@pytest.mark.parametrize(
-    ("header", "name", "unit"),
-    [
-        ("T1 [°C]", "T1", "degC"),
-        ("Speed (1/min)", "Speed", "1/min"),
-        ("T_yoke / °C", "T_yoke", "degC"),
-        ("t in s", "t", "s"),
-        ("speed_rpm", "speed", "rpm"),
-        ("P (kW)", "P", "kW"),
-        ("coil A1", "coil A1", ""),
-        ("Flow rate, l/min", "Flow rate", "l/min"),
-    ],
-)
-def test_units_in_headers(header, name, unit):
-    assert split_unit(header) == (name, unit)
-
-
 def test_the_columns_of_a_published_test_bench(root):
     """HUST: no units, no clock, 22 columns. Inputs and places agree with the case that was written by hand."""
     source = read_source(root / "cases/hust-ipmsm/tests/id_1.csv.gz")
@@ -364,24 +346,6 @@ def test_what_many_tests_lack_is_said_once(tmp_path, capsys):
     said = " ".join(capsys.readouterr().out.split())
     assert said.count("was not recorded") == 1
     assert "4 tests alike" in said
-
-
-@pytest.mark.parametrize(
-    ("cell", "value"),
-    [
-        ("1.234,5", 1234.5),
-        ("1,234.5", 1234.5),
-        ("1 234,5", 1234.5),
-        ("1'234'567", 1234567.0),
-        ("1.234.567", 1234567.0),
-        ("-12.345,25", -12345.25),
-        ("1.5", 1.5),
-        ("1,5", 1.5),
-        ("1,500", 1.5),
-    ],
-)
-def test_digits_in_threes(cell, value):
-    assert number(cell) == value
 
 
 def test_a_point_among_decimal_commas_stands_between_thousands(tmp_path):

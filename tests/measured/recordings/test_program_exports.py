@@ -8,10 +8,8 @@ from logger_formats import signals
 from nptdms import ChannelObject, TdmsWriter
 from scipy.io import savemat
 
-from geom.description.roles import Role
 from geom.errors import InputError
 from measured.headers.cells import split_unit
-from measured.headers.words import quantities_of, roles_of, tokens
 from measured.importing.aligned import Recording
 from measured.importing.case_files import read_runs
 from measured.importing.guess import (
@@ -306,21 +304,6 @@ def test_lines_over_a_table_say_what_its_channels_are(tmp_path):
     found, _ = read(tmp_path, "\n".join(lines) + "\n" + body(T, W, A, 9 * J))
     assert [g.quantity for g in found.values()] == ["temperature", "temperature", "power"]
     assert found["A2 Lab air [°C]"].place == "ambient"
-
-
-def test_compounds_with_a_joint_and_german_letters_spelled_out_are_words():
-    assert roles_of("Wicklungstemperatur")[0] == Role.WINDING
-    assert roles_of("Umgebungstemp")[0] == Role.AMBIENT
-    assert tokens("T_Kuehlkoerper") == tokens("T_Kühlkörper") == ("t", "heatsink")
-    assert quantities_of("p_loss") == ["power"]
-    assert not quantities_of("p_in_bar")
-
-
-def test_a_small_letter_is_the_unit_of_the_quantity_before_it():
-    assert split_unit("loss_w") == ("loss", "W")
-    assert split_unit("temp_c") == ("temp", "degC")
-    assert split_unit("T_f") == ("T_f", "")
-    assert split_unit("T_coil_w") == ("T_coil_w", "")
 
 
 def test_every_power_is_an_input_of_its_own(tmp_path):

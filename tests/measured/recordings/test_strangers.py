@@ -11,10 +11,8 @@ import numpy as np
 import pytest
 from logger_formats import signals
 
-from geom.description.roles import Role
 from geom.errors import InputError
-from measured.headers.cells import split_unit, unit_of
-from measured.headers.words import roles_of
+from measured.headers.cells import unit_of
 from measured.importing.aligned import Recording, longest_part
 from measured.importing.case_files import read_runs
 from measured.importing.clock import Clock, clock_of, in_time_order
@@ -399,11 +397,6 @@ def test_rows_out_of_order_are_sorted_where_that_makes_an_even_clock(tmp_path):
             assert source.numbers("T_winding")[0] == 109
 
 
-def test_outside_is_the_air_only_where_no_part_is_named():
-    assert roles_of("Ext T winding")[0] is Role.WINDING
-    assert roles_of("T ext")[0] is Role.AMBIENT
-
-
 @pytest.mark.parametrize(
     ("header", "encoding"), [("권선온도(℃),주위온도(℃),전류(A)", "utf-8"), ("Обмотка °C,Воздух °C,Ток [A]", "cp1251")]
 )
@@ -438,10 +431,6 @@ def test_the_air_that_comes_out_is_not_the_room(tmp_path):
     text = table("t [s],T_winding,Outlet air [°C],Inlet air [°C]", S["t"], S["W"], S["W"], ROOM)
     written(tmp_path, text)
     assert '"Outlet air [°C]" is left out' in (tmp_path / "made/tests/a.toml").read_text()
-
-
-def test_a_number_in_brackets_is_no_unit_but_at_the_end():
-    assert split_unit("Y[1] Frame") == ("Y[1] Frame", "")
 
 
 def test_channels_are_called_what_their_settings_call_them(tmp_path):
@@ -494,10 +483,6 @@ def test_a_row_for_every_reading_in_a_parquet_file(tmp_path):
     [(source, clock)] = read_runs(tmp_path / "a.parquet")
     assert clock.seconds == pytest.approx(10.0 * np.arange(30))
     assert source.numbers("T_room") == pytest.approx(30.0 + np.arange(30))
-
-
-def test_tenths_of_degrees_are_no_degrees():
-    assert unit_of(split_unit("T_winding [0.1 degC]")[1]) == ""
 
 
 def test_signals_of_matlab_that_are_named_in_their_structs(tmp_path):
