@@ -12,18 +12,7 @@ from geom.errors import InputError
 from measured.headers.cells import split_unit
 from measured.importing.aligned import Recording
 from measured.importing.case_files import read_runs
-from measured.importing.guess import (
-    AS_TORQUE,
-    AS_WINDING,
-    BY_READINGS,
-    DEAD,
-    INDOORS,
-    NUMBERED_MACHINE,
-    OF_INSTRUMENT,
-    OF_TESTED,
-    guesses,
-    in_memory,
-)
+from measured.importing.guess import BY_READINGS, guesses, in_memory
 from thermoscope.commands.test.new import first_model
 
 S = signals(5.0)
@@ -67,58 +56,6 @@ def test_a_break_with_remarks_early_in_a_table_costs_no_rows(tmp_path):
     assert read(tmp_path, "\n".join(text))[1].numbers("I [A]").size >= T.size
 
 
-@pytest.mark.parametrize(
-    ("names", "doubt"), [(("hotspot", "heatsink"), OF_TESTED), (("temps.igbt", "temps.heatsink"), OF_INSTRUMENT)]
-)
-def test_a_device_is_what_is_tested_where_nothing_else_is_warm(tmp_path, names, doubt):
-    found, _ = read(tmp_path, ",".join(("t [s]", *names, "ambient", "I [A]")) + "\n" + body(T, W, H, A, J))
-    assert [found[name].quantity for name in (*names, "ambient")] == 3 * ["temperature"]
-    assert all(found[name].place not in ("", "ambient") for name in names)
-    assert doubt in {found[name].doubt for name in names}
-
-
-def test_names_of_a_simulation(tmp_path):
-    """In kelvin; a rate is no temperature, a heat flow no water, and w beside a torque is in rad/s."""
-    names = "time,winding.T,fixedTemperature.T,der(winding.T),loss.Q_flow,motor.w,motor.tau,motor.i_rms"
-    rate = np.gradient(W, T)
-    still = np.full(T.size, 295.15)
-    found, _ = read(tmp_path, f"{names}\n{body(T, W + 273.15, still, rate, 3 * W, N / 10, M, J + 20)}")
-    assert goes(found) == {
-        "winding.T": "winding",
-        "fixedTemperature.T": "ambient",
-        "loss.Q_flow": "power_W",
-        "motor.w": "speed_rpm",
-        "motor.tau": "torque_Nm",
-        "motor.i_rms": "current_A",
-    }
-    assert found["motor.w"].unit == "rad/s"
-
-
-def test_a_junction_as_a_circuit_simulator_writes_it(tmp_path):
-    found, _ = read(tmp_path, f"time,V(tj),V(theatsink),V(tamb),I(P)\n{body(T, W, H, A, J)}")
-    assert {found[c].quantity for c in ("V(tj)", "V(theatsink)", "V(tamb)")} == {"temperature"}
-
-
-def test_a_load_among_temperatures_is_a_torque_where_it_starts_elsewhere(tmp_path):
-    found, _ = read(tmp_path, f"t,i_rms,w_mech,T_load,T_winding,T_housing,T_amb\n{body(T, J, N / 10, 4 + M, W, H, A)}")
-    assert (found["T_load"].feeds, found["T_load"].doubt) == ("torque_Nm", AS_TORQUE)
-    found, _ = read(tmp_path, f"t,i_rms,w_mech,T_load,T_winding,T_housing,T_amb\n{body(T, J, N / 10, H - 1, W, H, A)}")
-    assert found["T_load"].place == "load"
-
-
-def test_an_outer_wall_is_no_room(tmp_path):
-    found, _ = read(tmp_path, f"t [s],Camera [C],Parete esterna [C],Aria ambiente [C],I [A]\n{body(T, W, H, A, J)}")
-    assert goes(found)["Parete esterna [C]"] == "housing"
-
-
-@pytest.mark.parametrize(("part", "room"), [("buffer_tank", "outdoor"), ("winding", "living_room")])
-def test_a_room_is_a_part_of_a_house_and_the_surroundings_of_a_machine(tmp_path, part, room):
-    names = [f"{name}_temperature" for name in (part, "living_room", "outdoor")]
-    found, _ = read(tmp_path, ",".join(("t [s]", *names, "power [W]")) + "\n" + body(T, W, A, A - 15, 9 * J))
-    assert [name for name, place in goes(found).items() if place == "ambient"] == [f"{room}_temperature"]
-    assert (found["living_room_temperature"].doubt == INDOORS) == (room == "outdoor")
-
-
 @pytest.mark.parametrize(("units", "other"), [("s,degC,degC,degC,A\n", 0), ("", 0), ("", 2)])
 def test_an_index_among_others_is_no_unit(tmp_path, units, other):
     found, _ = read(tmp_path, f"t,theta_w[{other}],theta_w[1],theta_amb,i_s\n{units}{body(T, W, W + 1, A, J)}")
@@ -142,39 +79,6 @@ def test_rows_of_statistics_under_a_table_are_not_counted(tmp_path, capsys):
     assert new_case([tmp_path / "a.csv"], Wishes(out=tmp_path / "case", yes=True), str(document)) == 0
     (test,) = json.loads(document.read_text())["tests"]
     assert [file["rows"] for file in test["files"]] == [T.size]
-
-
-@pytest.mark.parametrize(
-    ("names", "places"),
-    [
-        (("Aceite superior", "Aceite inferior"), ["aceite-superior", "aceite-inferior"]),
-        (("Tank oil", "Cooler outlet oil"), ["tank-oil", "cooler-outlet-oil"]),
-        (("T_oil", "Oil inlet"), ["", "coolant"]),
-        (("T_oil", "T_water in"), ["", "coolant"]),
-    ],
-)
-def test_oil_that_the_machine_warms_is_a_part_unless_something_flows_in(tmp_path, names, places):
-    units = [f"{name} [degC]" for name in names]
-    found, _ = read(
-        tmp_path,
-        ",".join(("t [s]", "T_core [degC]", *units, "Room [degC]", "I [A]")) + "\n" + body(T, W, H, H - 1.0, A, J),
-    )
-    assert [found[name].place for name in units] == places
-
-
-def test_oil_that_a_pump_brings_stays_the_coolant(tmp_path):
-    names = "t [s],T_winding [degC],T_oil [degC],Room [degC],I [A],Oil flow [l/min]\n"
-    found, _ = read(tmp_path, names + body(T, W, H, A, J, 4.0 + 0.1 * np.sin(T)))
-    assert found["T_oil [degC]"].place == "coolant"
-
-
-@pytest.mark.parametrize("word", ["Puissance chauffe", "Heizung", "Potenza riscaldamento", "Heater power"])
-def test_heaters_of_several_zones_are_an_input_each(tmp_path, word):
-    names = f"t [s],Zone 1 [degC],Zone 2 [degC],T_amb [degC],{word} 1 [W],{word} 2 [W]\n"
-    found, _ = read(tmp_path, names + body(T, W, H, A, 10.0 * J, 5.0 * J))
-    powers = [g.feeds for g in found.values() if g.quantity == "power"]
-    assert len({*powers}) == 2
-    assert all(name.endswith("_W") for name in powers)
 
 
 def test_a_sign_behind_the_last_name_and_readings_under_it(tmp_path):
@@ -226,12 +130,6 @@ def test_numbered_columns_beside_one_that_reads_like_a_temperature(tmp_path):
         tmp_path, "t [s],Sensor 1,Sensor 2,Sensor 3\n" + body(T, W, dipped, 22.0 + 0.1 * (np.arange(T.size) > 20))
     )
     assert {name: g.quantity for name, g in found.items()} == dict.fromkeys(found, "temperature")
-
-
-def test_a_device_beside_a_dead_sensor_is_what_is_tested(tmp_path):
-    found, _ = read(tmp_path, "t [s],temp_mos_1,temp_motor,I [A]\n" + body(T, W, 39.2 + 0 * T, J))
-    assert (found["temp_mos_1"].place, found["temp_mos_1"].doubt) == ("mos-1", OF_INSTRUMENT)
-    assert (found["temp_motor"].place, found["temp_motor"].doubt) == ("", DEAD)
 
 
 def test_a_power_in_a_torques_unit_is_doubted(tmp_path):
@@ -306,26 +204,6 @@ def test_lines_over_a_table_say_what_its_channels_are(tmp_path):
     assert found["A2 Lab air [°C]"].place == "ambient"
 
 
-def test_every_power_is_an_input_of_its_own(tmp_path):
-    found, _ = read(tmp_path, "t [s],Tcoil [C],Tair [C],Pa [W],Pb [W]\n" + body(T, W, A, 9 * J, 5 * N / 1500))
-    assert [g.feeds for g in found.values() if g.quantity == "power"] == ["power_W", "pb_W"]
-
-
-def test_where_nothing_turns_a_device_is_what_is_tested(tmp_path):
-    found, _ = read(tmp_path, "t [s],T_module [C],T_heatsink [C],T_air [C],P [W]\n" + body(T, W, H, A, 9 * J))
-    assert found["T_heatsink [C]"].place == "heatsink"
-    beside = "t [s],T_module [C],T_heatsink [C],T_air [C],P [W],Speed [rpm]\n" + body(T, W, H, A, 9 * J, N)
-    assert not read(tmp_path, beside)[0]["T_heatsink [C]"].used
-
-
-def test_a_battery_has_no_winding(tmp_path):
-    head = "t [s],Cell 1 [C],Cell 2 [C],Air [C],I [A]"
-    still, _ = read(tmp_path, f"{head}\n" + body(T, W, H, A, J))
-    turning, _ = read(tmp_path, f"{head},Speed [rpm]\n" + body(T, W, H, A, J, N))
-    assert not any(AS_WINDING in g.doubt for g in still.values())
-    assert any(AS_WINDING in g.doubt for g in turning.values())
-
-
 def test_a_logged_line_with_its_instant_in_brackets(tmp_path):
     lines = [
         f"[2026-03-01 10:{k:02d}:00] INFO m: T_coil={w:.1f}C P_loss={9 * i:.1f}W"
@@ -359,48 +237,6 @@ def test_a_unit_may_stand_before_a_name_or_be_of_the_old_world(tmp_path):
     found, source = read(tmp_path, "t [s],T_coil [C],Heater (BTU/h)\n" + body(T, W, 3412.14 * J / 9))
     assert found["Heater (BTU/h)"].feeds == "power_W"
     assert in_memory(source, found["Heater (BTU/h)"]).max() == pytest.approx(1000.0, rel=1e-3)
-
-
-def test_two_machines_in_one_table_are_doubted(tmp_path):
-    found, _ = read(tmp_path, "t [s],Motor 1 coil [C],Motor 2 coil [C],Air [C],I [A]\n" + body(T, W, H, A, J))
-    assert [NUMBERED_MACHINE in g.doubt for g in found.values()] == [True, True, False, False]
-
-
-def test_the_power_of_a_machine_is_the_sum_of_its_phases(tmp_path):
-    """Copper and iron are no phases, and their sum is no reading more."""
-    P = 400.0 + 90.0 * J
-    phases = body(T, W, A, 0.33 * P, 0.34 * P, 0.33 * P, P)
-    found, _ = read(tmp_path, "t [s],T coil [C],T air [C],P1 [W],P2 [W],P3 [W],Power in [W]\n" + phases)
-    assert [c for c, g in found.items() if g.feeds] == ["Power in [W]"]
-    found, _ = read(
-        tmp_path, "t [s],T coil [C],T air [C],Pcu loss [W],Pfe loss [W],Total loss [W]\n" + body(T, W, A, J, N, J + N)
-    )
-    assert {"Pcu loss [W]", "Pfe loss [W]"} <= goes(found).keys()
-
-
-@pytest.mark.parametrize(("sign", "used"), [(1.0, True), (-1.0, True), (np.sign(T - 100.0), False)])
-def test_a_power_of_both_signs_passes_through(tmp_path, sign, used):
-    """One that is negative throughout is a clamp the wrong way round, of which compare tells."""
-    found, _ = read(
-        tmp_path, "t [s],T coil [C],T air [C],Power [W],Speed [rpm]\n" + body(T, W, A, sign * (9 * J + 3), N)
-    )
-    assert found["Power [W]"].used == used
-
-
-@pytest.mark.parametrize("room", ["Room [C]", ""])
-def test_air_that_enters_and_leaves_cools_beside_a_room(tmp_path, room):
-    head = "t [s],T coil [C],1 <Air in> [C],2 <Air out> [C],I [A]" + f",{room}" * bool(room)
-    found, _ = read(tmp_path, head + "\n" + body(T, W, A, A + 0.2 * (H - A), J, *[A] * bool(room)))
-    assert found["1 <Air in> [C]"].place == ("coolant" if room else "ambient")
-    assert not room or found[room].place == "ambient"
-
-
-def test_the_least_and_the_largest_beside_a_mean_are_no_readings_of_their_own(tmp_path):
-    """The mean of both would be a function of them."""
-    names = [f"{name}/{kind} [C]" for name in ("T coil", "T Cell") for kind in ("AVE", "MIN", "MAX")]
-    columns = [v + d for v in (W, A) for d in (0.0, -0.1, 0.1)]
-    found, _ = read(tmp_path, ",".join(["t [s]", *names, "I [A]"]) + "\n" + body(T, *columns, J))
-    assert goes(found) == {names[0]: "coil-ave", names[3]: "ambient", "I [A]": "current_A"}
 
 
 @pytest.mark.parametrize(

@@ -28,7 +28,6 @@ from validation.comparison.compare import compare
 
 S = signals(5.0)
 S["K"], S["k"] = S["W"] + 273.15, 1000 * S["t"]
-ROOM = f"{22:.2f}"
 NAMES = ("Winding U", "Ambient", "Current")
 
 
@@ -427,12 +426,6 @@ def test_a_recording_of_rises_alone_is_refused_by_their_name(tmp_path):
         written(tmp_path, table("t in s,Übertemperatur Wicklung in K,I in A", S["t"], S["W"] - 22, S["I"]))
 
 
-def test_the_air_that_comes_out_is_not_the_room(tmp_path):
-    text = table("t [s],T_winding,Outlet air [°C],Inlet air [°C]", S["t"], S["W"], S["W"], ROOM)
-    written(tmp_path, text)
-    assert '"Outlet air [°C]" is left out' in (tmp_path / "made/tests/a.toml").read_text()
-
-
 def test_channels_are_called_what_their_settings_call_them(tmp_path):
     """Ranges of channels look like readings, and stand in a table of their own before the header."""
     head = ["CH,Name,Input,Filter,Span", *(f'CH{k},{n},TEMP,Off,"-100","1370"' for k, n in enumerate(NAMES, 1))]
@@ -766,12 +759,6 @@ def test_a_set_point_gives_way_to_a_reading_and_is_doubted_without_one(tmp_path,
     assert document["warnings"] == []
 
 
-def test_a_tag_of_a_channel_is_no_part_of_its_name(tmp_path):
-    names = ("101 Winding <TC K> (C)", "101 Winding Max (C)", "102 Frame <TC K> (C)", "103 Amb <RTD> (C)", "104 I (A)")
-    folder, _ = written(tmp_path, table(",".join(["t [s]", *names]), *(S[c] for c in "tWHHAI")))
-    assert [c.name for c in folder.case.tests[0].channels] == [names[0], names[2]]
-
-
 @pytest.mark.parametrize(
     "own", ["CJC_temp", "T_Vergleichsstelle", "Soudure froide", "Cold junction", "Giunto freddo", "Board temp", "CPU_T"]
 )
@@ -789,22 +776,6 @@ def test_the_temperature_of_the_instrument_is_none_of_the_machine(tmp_path, own,
 def test_of_a_room_and_the_instrument_alone_there_is_no_machine(tmp_path):
     with pytest.raises(InputError, match=r"no column is a temperature.*'Internal temp \[C\]' is left out: of the inst"):
         written(tmp_path, table("t [s],Room temp [C],Internal temp [C],I [A]", *(S[c] for c in "tAHI")))
-
-
-@pytest.mark.parametrize("room", ["T_TESTCELL", "Test cell", "Prüfzelle", "Prüfraum", "Cella di prova"])
-@pytest.mark.parametrize(
-    ("inlet", "outlet"),
-    [("T_EM_COOL_IN", "T_EM_COOL_OUT"), ("Water in", "Water out"), ("냉각수입구온도", "냉각수출구온도")],
-)
-def test_rooms_of_test_beds_and_what_flows_in(tmp_path, room, inlet, outlet):
-    names = [f"{name} [°C]" for name in ("T_winding", outlet, inlet, room)]
-    folder, _ = written(
-        tmp_path, table(",".join(["t [s]", *names, "I [A]"]), S["t"], S["W"], S["A"] + 20, S["A"] + 15, S["A"], S["I"])
-    )
-    test = folder.case.tests[0]
-    assert [c.name for c in test.channels] == [names[0]]
-    assert test.boundaries["ambient"] == pytest.approx(S["A"], abs=0.006)
-    assert test.boundaries["coolant"] == pytest.approx(S["A"] + 15, abs=0.006)
 
 
 CHINESE = ("时间(s)", "绕组温度(℃)", "机壳温度(℃)", "环境温度(℃)", "定子电流(A)", "状态")
@@ -921,16 +892,6 @@ def test_a_table_s_name_over_a_current_makes_no_temperature_of_it(tmp_path):
     assert {"current_A", "power_W"} <= set(case.case.tests[0].inputs), document
 
 
-def test_an_angle_is_no_current_and_words_of_the_drive_are_no_temperatures(tmp_path):
-    head = "t [s],T_winding [degC],T_room [degC],i_a [A],position [rad],fault,mode,rev"
-    text = table(head, S["t"], S["W"], S["A"], S["I"], 0.3 * S["t"], 0 * S["t"], 2 + 0 * S["t"], 7 + 0 * S["t"])
-    case, document = written(tmp_path, text)
-    (test,) = case.case.tests
-    assert [c.name for c in test.channels] == ["T_winding [degC]"], document
-    assert [*test.inputs] == ["current_A"]
-    assert test.inputs["current_A"].max() == pytest.approx(S["I"].max())
-
-
 def test_a_header_may_name_more_than_its_rows_fill(tmp_path):
     text = table("t [s],T_winding [degC],T_room [degC],I [A],T_spare [degC],Remark", *(S[c] for c in "tWAI"))
     case, _ = written(tmp_path, text)
@@ -1016,14 +977,6 @@ def test_whole_bytes_of_a_heater_and_a_fan_are_shares(tmp_path, most):
     assert (quantities["heat"], quantities["fan"]) == ("share", "flow_share")
 
 
-def test_loads_beside_what_they_warm_are_shares_and_a_hot_spot_stays_a_temperature(tmp_path):
-    load = 10 * (S["I"] % 7)
-    text = table("t [s],gpu_load,ssd_load,gpu_hotspot,ssd_temp", S["t"], load, load[::-1], S["W"], S["H"])
-    _, document = written(tmp_path, text)
-    quantities = [c["quantity"] for c in document["tests"][0]["columns"]]
-    assert quantities == ["share", "share", "temperature", "temperature"]
-
-
 def test_a_flow_that_is_recorded_twice_is_no_clock(tmp_path):
     flow = np.where(S["t"] > S["t"][-1] / 2, 8.0, 5.0)
     text = table("Q [l/min],Q set [l/min],T_winding [C],T_room [C]", flow, flow, S["W"], S["A"])
@@ -1036,13 +989,6 @@ def test_without_names_readings_of_tenths_are_temperatures_and_few_whole_numbers
     (tmp_path / "a.csv").write_text("".join(f"{v:.1f},{k // 45},3,{10 * k}\n" for k, v in enumerate(room)))
     source = read_source(tmp_path / "a.csv")
     assert [g.quantity for g in guesses(source, ["column 4"], Target())] == ["temperature", "share", ""]
-
-
-def test_what_leaves_a_machine_is_a_part_where_nothing_else_was_read(tmp_path, capsys):
-    text = table("t [s],water inlet [C],water outlet [C],power [W]", S["t"], S["A"], S["W"], S["I"] ** 2)
-    _, document = written(tmp_path, text)
-    assert goes(document) == {"water inlet [C]": "coolant", "water outlet [C]": "water-outlet", "power [W]": "power_W"}
-    assert "'water outlet [C]': of a coolant by its name" in " ".join(capsys.readouterr().out.split())
 
 
 def test_a_cryostat_is_refused_by_its_readings(tmp_path):
@@ -1073,18 +1019,6 @@ def test_one_temperature_that_starts_near_70_without_a_unit_is_doubted(tmp_path,
 def test_millikelvins_are_refused_by_their_readings(tmp_path):
     with pytest.raises(InputError, match=r"'MXC \[mK\]' is left out: -273.* as temperature cannot be right"):
         written(tmp_path, table("t [s],MXC [mK],Still [mK]", S["t"], S["W"], 700 + S["W"]))
-
-
-def test_air_inside_is_a_part_where_air_outside_is_recorded(tmp_path):
-    header = "t [s],internal_air,external_air,internal_wall,heater_power"
-    _, document = written(tmp_path, table(header, S["t"], S["H"], S["A"] - 10, S["H"] - 1, 100 * S["I"]))
-    places = goes(document)
-    assert [places[c] for c in ("internal_air", "external_air")] == ["internal-air", "ambient"]
-
-
-def test_a_letter_behind_a_point_is_a_voltage(tmp_path):
-    text = table("t [s],T.motor,T.amb,dc.v,dc.i", S["t"], S["W"], S["A"], 48 - S["I"] / 10, S["I"])
-    assert goes(written(tmp_path, text)[1])["dc.v"] == "voltage_V"
 
 
 @pytest.mark.parametrize("line", ["{d}-10:{m:02d}:{s}.5,{c:.2f}", "{d}@10:{m:02d}:{s} - Temp Top :{c:.2f} C"])
@@ -1123,12 +1057,6 @@ def test_zones_with_two_readings_in_every_row_are_tests(tmp_path):
     folder, document = of_lines(tmp_path, ["timestamp,zone,temp,uv", *rows])
     assert len(folder.case.tests) == 3
     assert goes(document) == {"temp": "part"}
-
-
-def test_what_is_out_is_the_open_air_beside_rooms_of_a_house(tmp_path):
-    header = "t [s],T_out,T_kitchen,T_brine_out,power [W]"
-    _, document = written(tmp_path, table(header, S["t"], S["A"] - 20, S["H"], S["A"] - 22, 100 * S["I"]))
-    assert goes(document)["T_out"] == "ambient"
 
 
 def test_probes_that_are_moved_once_are_temperatures_by_their_readings(tmp_path):
