@@ -11,7 +11,6 @@ from geom.errors import InputError
 from lumped.model.quantities import INPUTS
 from measured.importing.aligned import Recording, shift
 from measured.importing.case_files import read_runs
-from measured.importing.clock import clock_of
 from measured.importing.guess import AS_FLOW, ELSE, OF_READINGS, OF_SUPPLY, ON_OFF, guesses, in_memory
 from measured.importing.source import read_source, signature
 from thermoscope.commands.test.new import Wishes, first_model, new_case as new
@@ -154,12 +153,6 @@ def test_a_picture_beside_a_recording_is_left_out(tmp_path):
     assert "bench.png is left out: it is not a record" in source.notes
 
 
-def test_times_of_day_with_points_every_minute(tmp_path):
-    stamps = [f"{9 + k // 60:02d}.{k % 60:02d}.00" for k in range(N)]
-    ((_, clock),) = read_runs(file(tmp_path, "Dato,Klokkeslæt,T,I", ["03-02-2025"] * N, stamps, *"WI"))
-    assert clock.end_s == 60 * (N - 1)
-
-
 def test_rows_of_several_machines(tmp_path):
     """One after the other at every time: a test of each; rows that a state parts are of one."""
     both = {c: np.repeat(WARM[c], 2) for c in "tWAI"}
@@ -264,17 +257,6 @@ def test_a_home_writes_its_room_seldom_and_a_control_system_its_own_end(tmp_path
     document = written(tmp_path, tmp_path / "a.csv")
     assert document["tests"][0]["duration_s"] == pytest.approx(5 * (N - 1))
     assert "'sensor.cellar_temperature': hardly warms: taken as the room" in document["warnings"]
-
-
-@pytest.mark.parametrize(
-    ("line", "step_s"),
-    [("Rate,10 s", 10.0), ("Scan rate = 500 ms", 0.5), ("Messtakt:;10 s;;", 10.0), ("Sampling rate: 10 Hz", 1.0)],
-)
-def test_how_often_a_logger_reads(tmp_path, line, step_s):
-    """By a line before the names; a frequency is none, nor a flow."""
-    rows = "".join(f"{w:.2f},{i:.1f}\n" for w, i in zip(WARM["W"], WARM["I"]))
-    (tmp_path / "a.csv").write_text(f"{line}\nflow rate,3 l/min\nT_winding [°C],I [A]\n{rows}")
-    assert clock_of(read_source(tmp_path / "a.csv")).seconds == pytest.approx(step_s * np.arange(N))
 
 
 def test_series_of_instants_and_readings(tmp_path):
@@ -520,26 +502,6 @@ def test_what_comes_in_beside_a_flow_is_the_coolant(tmp_path, flow, place):
     found, runs = read(file(tmp_path, header, "t", "W", "A", 0.7 * WARM["A"] + 0.3 * WARM["W"], flows, "I"))
     assert (found["T_in [°C]"][0].place == "coolant") == bool(place)
     assert ("those of the flow" in " ".join(runs[0][0].notes)) == bool(place)
-
-
-def test_minutes_and_seconds_go_on_from_hour_to_hour(tmp_path):
-    """As spreadsheets cut instants: no test begins anew at each full hour."""
-    stamps = [f"{10 * k % 60:02d}:42.0" for k in range(N)]
-    ((_, clock),) = read_runs(file(tmp_path, "Time,T [°C],I [A]", stamps, "W", "I"))
-    assert clock.end_s == 600 * (N - 1)
-
-
-def test_a_clock_that_slips_for_one_row_costs_that_row(tmp_path):
-    seconds = [*range(0, 60 * N, 60)]
-    slips = [max(s - 180, 0) if k == N // 2 else s for k, s in enumerate(seconds)]
-    stamps = [f"2025-03-01 {s // 3600:02d}:{s // 60 % 60:02d}:{s % 60:02d}" for s in slips]
-    ((_, clock),) = read_runs(file(tmp_path, "Time,T [°C],I [A]", stamps, "W", "I"))
-    assert np.isnan(clock.seconds).sum() == 1
-    assert "1 rows whose clock runs back" in clock.doubt
-    back = [s - 1800 * (k >= N // 2) for k, s in enumerate(seconds)]
-    stamps = [f"2025-03-01 {s // 3600:02d}:{s // 60 % 60:02d}:{s % 60:02d}" for s in back]
-    with pytest.raises(InputError, match="runs back"):
-        read_runs(file(tmp_path, "Time,T [°C],I [A]", stamps, "W", "I"))
 
 
 def test_two_dashes_before_a_reading_with_its_name(tmp_path):

@@ -138,14 +138,6 @@ def test_a_power_in_a_torques_unit_is_doubted(tmp_path):
     assert "a power" in found["Power [N.mm]"].doubt
 
 
-def test_milliseconds_of_a_day_are_no_seconds(tmp_path):
-    (tmp_path / "a.csv").write_text(
-        "ms_today,T_coil [degC]\n" + "".join(f"{76231191 + 91 * k},{v:.2f}\n" for k, v in enumerate(W))
-    )
-    [(_, clock)] = read_runs(tmp_path / "a.csv")
-    assert clock.end_s == pytest.approx(0.091 * (W.size - 1))
-
-
 def test_seconds_since_1970_without_a_name_are_a_clock_where_they_run_back(tmp_path):
     times = np.tile(np.arange(T.size // 3), 3) * 3600 + 1692576000
     rows = [f"{t},tank,Tank {k},{v:.2f}" for k, (t, v) in enumerate(zip(times.tolist(), W, strict=False))]
@@ -178,14 +170,6 @@ def test_remarks_under_hours_and_minutes_do_not_make_them_minutes_and_seconds(tm
     (tmp_path / "a.csv").write_text(text + "\n")
     [(_, clock)] = read_runs(tmp_path / "a.csv")
     assert clock.end_s == pytest.approx(29 * 600.0)
-
-
-@pytest.mark.parametrize("stamp", [" 12/31  {:02d}:00:00", "31.12. {:02d}:00"])
-def test_dates_without_a_year_are_a_clock_without_a_start(tmp_path, stamp):
-    rows = [f"{stamp.format(h)},{v:.1f},{i:.1f}" for h, v, i in zip(range(1, 25), W, J)]
-    (tmp_path / "a.csv").write_text("\n".join(["Date/Time,T_coil [degC],I [A]", *rows]) + "\n")
-    [(_, clock)] = read_runs(tmp_path / "a.csv")
-    assert (clock.start, clock.end_s, clock.doubt) == (None, pytest.approx(23 * 3600.0), "")
 
 
 def test_quantities_and_units_under_the_names_of_parts(tmp_path):

@@ -196,12 +196,6 @@ def test_a_clock_with_a_zone_beside_one_without(tmp_path):
     assert "the whole hours are guessed" in how
 
 
-def test_hours_and_minutes_as_written_by_hand_in_french(tmp_path):
-    stamps = [f"{10 + k // 60}h{k % 60:02d}" for k in range(100)]
-    one = record(tmp_path, {"heure": stamps, "T bobine [°C]": W1[:100], "I [A]": LOAD[:100]})
-    assert one.clock.seconds == pytest.approx(60.0 * np.arange(100))
-
-
 def told(tmp_path, header, *columns):
     """Column -> quantity, unit, and the place or the input it goes to."""
     rows = "\n".join(",".join(f"{cell:g}" for cell in row) for row in zip(*columns, strict=True))
@@ -269,23 +263,6 @@ def test_where_names_end_on_units_a_v_is_of_volts(tmp_path, header, quantity):
     hot = [WARM + np.cos(k * K) for k in range(len(header.split(",")) - 1)]
     read = told(tmp_path, header, K, *hot[:-1], hot[-1] - 18 * (quantity == "voltage"))
     assert {what for name, (what, _, _) in read.items() if re.search("_v$", name)} == {quantity}
-
-
-@pytest.mark.parametrize(
-    "stamp",
-    [
-        lambda s: f"2024-04-17_10-{s // 60:02d}-{s % 60:02d}",
-        lambda s: f"17.4.2024 10:{s // 60}:{s % 60}",
-        lambda s: f"10:{s // 60}:{s % 60}",
-        lambda s: f"17.4.2024,10:{s // 60}:{s % 60}",
-    ],
-)
-def test_an_hour_with_other_signs_and_without_noughts(tmp_path, stamp):
-    names = ("date", "time")[-stamp(0).count(",") - 1 :]
-    lines = [f"{stamp(7 * k)},{w:.2f}" for k, w in enumerate(WARM)]
-    [(clock, _)] = runs_of_text(tmp_path, "\n".join([",".join([*names, "T_winding [°C]"]), *lines]))
-    assert clock.seconds == pytest.approx(7 * K)
-    assert not clock.doubt
 
 
 def test_a_count_since_the_start_without_a_name_begins_anew_with_every_run(tmp_path):
