@@ -438,10 +438,7 @@ def test_clocks_of_two_loggers_from_zero_are_still_set_by_what_begins(tmp_path):
 
 def test_a_labview_file_has_its_units_in_its_second_head_and_no_groups(tmp_path):
     head = [
-        "LabVIEW Measurement",
-        "Separator\tTab",
-        "***End_of_Header***\t",
-        "Channels\t3",
+        *("LabVIEW Measurement", "Separator\tTab", "***End_of_Header***\t", "Channels\t3"),
         "Date" + 3 * "\t2024/06/11",
     ]
     head += [

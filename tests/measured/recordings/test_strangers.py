@@ -596,11 +596,7 @@ WRITTEN = {  # each is a winding, a frame, the room and a current
     '"Time","08:52:31.0","08:52:31.0"\n' + table("", *("" if c == "-" else S[c] for c in "-WHAI")),
     "tags of instruments": of(
         (
-            "time_s",
-            "M101.TI_Winding.PV",
-            "M101.TI_Winding.Q",
-            "M101.TI_Frame.PV",
-            "P.TI_Ambient.PV",
+            *("time_s", "M101.TI_Winding.PV", "M101.TI_Winding.Q", "M101.TI_Frame.PV", "P.TI_Ambient.PV"),
             "M101.II_Motor.PV",
         ),
         "tWfHAI",
@@ -776,14 +772,10 @@ def test_a_code_page_is_told_by_words_of_headers_whatever_a_column_repeats(tmp_p
     ("header", "unit", "quantity"),
     [
         ("GPS Speed (Meters/second)", "m/s", "vehicle_speed"),
-        ("Speed (kilometers/hour)", "km/h", "vehicle_speed"),
-        ("Speed (Revolutions/minute)", "rpm", "speed"),
-        ("Load (Amperes)", "A", "current"),
-        ("Bus (Volts)", "V", "voltage"),
-        ("Case (Fahrenheit)", "degF", "temperature"),
-        ("Case (degrees Celsius)", "degC", "temperature"),
-        ("Speed (knots)", "", ""),
-        ("Motor speed (actual)", "rpm", "speed"),
+        *(("Speed (kilometers/hour)", "km/h", "vehicle_speed"), ("Speed (Revolutions/minute)", "rpm", "speed")),
+        *(("Load (Amperes)", "A", "current"), ("Bus (Volts)", "V", "voltage")),
+        *(("Case (Fahrenheit)", "degF", "temperature"), ("Case (degrees Celsius)", "degC", "temperature")),
+        *(("Speed (knots)", "", ""), ("Motor speed (actual)", "rpm", "speed")),
     ],
 )
 def test_units_that_are_spelled_out_and_a_speed_in_an_unknown_one(tmp_path, header, unit, quantity):
