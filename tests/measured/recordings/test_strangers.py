@@ -512,96 +512,81 @@ def test_of_a_recording_with_a_gap_the_longest_part_is_the_test():
     assert longest_part(hourly, 120.0) == ((0.0, None), ())
 
 
-def of(names, letters, sep=","):
-    """Text of columns under their names."""
-    return table(sep.join(names), *(S[c] for c in letters), sep=sep)
-
-
 S["f"] = 1.0 + np.arange(len(S["t"]))
-PLAIN = ("t [s]", "T_winding [C]", "T_frame [C]", "T_amb [C]", "I [A]")
-LABELLED = "Name:\tTime\tWinding\tFrame\tRoom\tCurrent\nUnit:\ts\t°C\t°C\t°C\tA\nStep:\t5\t5\t5\t5\t5\n"
+WHAI = [*zip(*(S[c] for c in "WHAI"), strict=True)]
+PLACES, FOUR = ("winding", "frame", "room"), ("winding_C", "frame_C", "room_C", "I_A")
+PLAIN = "t [s],T_winding [C],T_frame [C],T_amb [C],I [A]"
 SHORT = "No.;;T winding;T frame;T room;Current\nUnit:;;°C;°C;°C;A\nDate;Time;;;;\n"
 LEGEND = "# T1 = Winding head\n# T2 = Frame\n# T3 = Ambient air\n# I1 = Phase current\n"
-PATHS = (
-    "t [s]",
-    *(f"Test bed 3/{n}" for n in ("Motor/Winding [C]", "Motor/Frame [C]", "Room/Air [C]", "Supply/I [A]")),
-)
-KOREAN = ("시간(s)", "권선 온도(℃)", "하우징 온도(℃)", "주위 온도(℃)", "전류(A)")
-HUNGARIAN = ("Idő", "Tekercs (°C)", "Ház (°C)", "Környezeti hőmérséklet (°C)", "Áram (A)")
+BED = "Test bed 3/"
+
+
+def of(header, letters="tWHAI", sep=","):
+    """Text of columns under their names."""
+    return table(header, *(S[c] for c in letters), sep=sep)
+
+
+def each(row, letters="WHAI"):
+    """A line for every row of the table.  row(k, minutes, seconds, *readings)"""
+    return "".join(row(k, k // 12, 5 * k % 60, *(S[c][k] for c in letters)) for k in range(len(S["t"])))
+
+
 WRITTEN = {  # each is a winding, a frame, the room and a current
-    "labels before numbers": LABELLED.rstrip("\n") + of([], "tWHAI", "\t").replace("\n", "\n\t").rstrip("\t"),
+    "labels before numbers": "Name:\tTime\tWinding\tFrame\tRoom\tCurrent\nUnit:\ts\t°C\t°C\t°C\tA\nStep:\t5\t5\t5\t5\t5"
+    + of("", sep="\t").replace("\n", "\n\t").rstrip("\t"),
     "a clock's name in a row of its own": SHORT
-    + "\n".join(
-        f"03.11.25;08:{k // 12:02d}:{5 * (k % 12):02d};{w:.2f};{h:.2f};{a:.2f};{i:.2f}"
-        for k, (w, h, a, i) in enumerate(zip(S["W"], S["H"], S["A"], S["I"]))
+    + each(lambda k, m, s, w, h, a, i: f"03.11.25;08:{m:02d}:{s:02d};{w:.2f};{h:.2f};{a:.2f};{i:.2f}\n"),
+    "lines that say what a channel is": LEGEND + of("time_s\tT1_C\tT2_C\tT3_C\tI1_A", sep="\t"),
+    "the test bed before every name": of(
+        f"t [s],{BED}Motor/Winding [C],{BED}Motor/Frame [C],{BED}Room/Air [C],{BED}Supply/I [A]"
     ),
-    "lines that say what a channel is": LEGEND + of(("time_s", "T1_C", "T2_C", "T3_C", "I1_A"), "tWHAI", "\t"),
-    "the test bed before every name": of(PATHS, "tWHAI"),
-    "Korean": of(KOREAN, "tWHAI").encode("cp949"),
-    "Hungarian": of(HUNGARIAN, "tWHAI", ";").encode("cp1250"),
-    "columns of JSON": json.dumps(
-        {n: [*S[c]] for n, c in zip(("time_s", "winding_C", "frame_C", "room_C", "I_A"), "tWHAI")}
-    ),
-    "millivolts beside degrees": of((*PLAIN, "T_winding [mV]"), "tWHAIW"),
+    "Korean": of("시간(s),권선 온도(℃),하우징 온도(℃),주위 온도(℃),전류(A)").encode("cp949"),
+    "Hungarian": of("Idő;Tekercs (°C);Ház (°C);Környezeti hőmérséklet (°C);Áram (A)", sep=";").encode("cp1250"),
+    "Turkish": of("Zaman (s),Sargı (°C),Gövde (°C),Ortam sıcaklığı (°C),Akım (A)").encode("cp1254"),
+    "time in one word of Japanese": of("経過時間[秒],巻線[℃],機壳[℃],室温[℃],電流[A]").encode("cp932", "ignore"),
+    "columns of JSON": json.dumps({n: [*S[c]] for n, c in zip(("time_s", *FOUR), "tWHAI")}),
+    "millivolts beside degrees": of(f"{PLAIN},T_winding [mV]", "tWHAIW"),
     "a path above names that repeat": "File,C:/m.csv\nStep [ms],5000\n"
-    + table("Name,Twdg,Name,Thsg,Name,Tamb,Name,Irms", *(S[c] for c in "tWtHtAtI")),
+    + of("Name,Twdg,Name,Thsg,Name,Tamb,Name,Irms", "tWtHtAtI"),
     "topics and payloads": "ts,topic,payload\n"
-    + "".join(
-        f"{5 * k},{topic},{S[c][k]:.2f}\n"
-        for k in range(len(S["t"]))
-        for c, topic in zip("WHAI", ("motor/winding", "motor/frame", "hall/ambient", "motor/current"))
+    + each(
+        lambda k, m, s, *of: "".join(
+            f"{5 * k},{topic},{v:.2f}\n"
+            for topic, v in zip(("motor/winding", "motor/frame", "hall/ambient", "motor/current"), of)
+        )
     ),
     "fields that are called elsewhere": json.dumps(
         {
             "about": {"field1": "Winding", "field2": "Frame", "field3": "Room", "field4": "Current", "id": "x"},
             "feeds": [
-                dict(zip(("time_s", "field1", "field2", "field3", "field4", "id"), map(str, row)))
-                for row in zip(*(S[c] for c in "tWHAI"), range(len(S["t"])))
+                {"time_s": str(5 * k), "id": str(k), **{f"field{j}": str(v) for j, v in enumerate(row, 1)}}
+                for k, row in enumerate(WHAI)
             ],
         }
     ),
-    "lines of a program": "".join(
-        f"2026-03-17 14:{k // 12:02d}:{5 * k % 60:02d},250 INFO: winding={w:.2f} frame={h:.2f} room={a:.2f} I={i:.2f}\n"
-        for k, (w, h, a, i) in enumerate(zip(S["W"], S["H"], S["A"], S["I"]))
+    "lines of a program": each(
+        lambda k, m, s, w, h, a, i: (
+            f"2026-03-17 14:{m:02d}:{s:02d},250 INFO: winding={w:.2f} frame={h:.2f} room={a:.2f} I={i:.2f}\n"
+        )
     ),
-    "a data frame": json.dumps(
-        {n: dict(zip(map(str, S["t"]), S[c])) for n, c in zip(("winding_C", "frame_C", "room_C", "I_A"), "WHAI")}
-    ),
-    "rows of a data frame": json.dumps(
-        {
-            "columns": ["winding_C", "frame_C", "room_C", "I_A"],
-            "index": [*S["t"]],
-            "data": [[S[c][k] for c in "WHAI"] for k in range(len(S["t"]))],
-        }
-    ),
-    "extremes beside readings": of((*PLAIN, "T_winding max [C]", "T_winding min [C]"), "tWHAIHB"),
-    "Turkish": of(("Zaman (s)", "Sargı (°C)", "Gövde (°C)", "Ortam sıcaklığı (°C)", "Akım (A)"), "tWHAI").encode(
-        "cp1254"
-    ),
-    "a serial number behind the first row": of((*PLAIN, "serial"), "tWHAI")
-    .replace("\n", ",4711\n", 2)
-    .replace(",4711", "", 1),
-    "a camera that counts its frames": of(("Frame", *PLAIN), "ftWHAI"),
-    "remarks under the names": of(("Time[s]", "U1-1[C]", "U1-2[C]", "U1-3[C]", "U2-1[A]"), "tWHAI").replace(
-        "\n", "\nComment,Winding,Frame,Room,Current\n", 1
-    ),
-    "a unit over a group of names": ",Temperatures [°C],,,Electrical\n"
-    + of(("t [s]", "Winding U", "Frame", "Room", "I1 [A]"), "tWHAI"),
-    "few units under names that repeat": "Bench,,Winding,,Frame,,Room,,Supply,\n"
-    + of(("Time", "No", *["Temp", "Status"] * 3, "Current", "Status"), "tfWfHfAfIf").replace(
-        "\n", "\ns,,degC,,degC,,degC,,A,\n", 1
+    "a data frame": json.dumps({n: dict(zip(map(str, S["t"]), S[c])) for n, c in zip(FOUR, "WHAI")}),
+    "rows of a data frame": json.dumps({"columns": FOUR, "index": [*S["t"]], "data": WHAI}),
+    "extremes beside readings": of(f"{PLAIN},T_winding max [C],T_winding min [C]", "tWHAIHB"),
+    "a serial number behind the first row": of(f"{PLAIN},serial").replace("\n", ",4711\n", 2).replace(",4711", "", 1),
+    "a camera that counts its frames": of(f"Frame,{PLAIN}", "ftWHAI"),
+    "remarks under the names": of("Time[s],U1-1[C],U1-2[C],U1-3[C],U2-1[A]\nComment,Winding,Frame,Room,Current"),
+    "a unit over a group of names": of(",Temperatures [°C],,,Electrical\nt [s],Winding U,Frame,Room,I1 [A]"),
+    "few units under names that repeat": of(
+        f"Bench,,Winding,,Frame,,Room,,Supply,\nTime,No{',Temp,Status' * 3},Current,Status\ns,,degC,,degC,,degC,,A,",
+        "tfWfHfAfIf",
     ),
     "settings of every column": '"TraceName","T_COIL","T_FRAME","T_AMB","I"\n"VUnit","C","C","C","A"\n'
     '"HResolution",5.0,5.0,5.0,5.0\n"HUnit","s","s","s","s"\n"Date","2025/03/14","2025/03/14"\n'
-    '"Time","08:52:31.0","08:52:31.0"\n' + table("", *("" if c == "-" else S[c] for c in "-WHAI")),
+    '"Time","08:52:31.0","08:52:31.0"\n' + table("", "", *(S[c] for c in "WHAI")),
     "tags of instruments": of(
-        (
-            *("time_s", "M101.TI_Winding.PV", "M101.TI_Winding.Q", "M101.TI_Frame.PV", "P.TI_Ambient.PV"),
-            "M101.II_Motor.PV",
-        ),
-        "tWfHAI",
-    ).replace("M101.II_Motor.PV", "M101.II_Current.PV"),
-    "a model's short name": of((*PLAIN, "T_winding_mdl [C]"), "tWHAIH"),
+        "time_s,M101.TI_Winding.PV,M101.TI_Winding.Q,M101.TI_Frame.PV,P.TI_Ambient.PV,M101.II_Current.PV", "tWfHAI"
+    ),
+    "a model's short name": of(f"{PLAIN},T_winding_mdl [C]", "tWHAIH"),
     "tenths of degrees": table(
         "t [s],T_winding (x0.1 °C),T_frame [1/10 °C],T_amb [0.1°C],I [10 mA]",
         *(S["t"], *(10 * S[c] for c in "WHA"), 100 * S["I"]),
@@ -614,36 +599,30 @@ WRITTEN = {  # each is a winding, a frame, the room and a current
     "a place beside what is measured": "#group,false,false\n,_time,_value,_field,location\n"
     + "".join(
         f",{5 * k},{S[c][k]:.2f},{field},{place}\n"
-        for c, field, place in zip("WHAI", ["temperature"] * 3 + ["current"], ["winding", "frame", "room", "L1"])
+        for c, field, place in zip("WHAI", ["temperature"] * 3 + ["current"], [*PLACES, "L1"])
         for k in range(len(S["t"]))
     ),
-    "time in one word of Japanese": table(
-        "経過時間[秒],巻線[℃],機壳[℃],室温[℃],電流[A]", S["t"], *(S[c] for c in "WHAI")
-    ).encode("cp932", "ignore"),
-    "a limit beside readings": table(
-        ",".join((*PLAIN, "T_winding max allowed [C]")), *(S[c] for c in "tWHAI"), "155.0"
-    ),
+    "a limit beside readings": table(f"{PLAIN},T_winding max allowed [C]", *(S[c] for c in "tWHAI"), "155.0"),
     "signals of JSON by their names": json.dumps(
         {
             "device": "X",
             "channels": [
                 {"name": name, "unit": unit, "data": [*S[c]]}
-                for name, unit, c in zip(
-                    ("time", "winding", "frame", "room", "current"), ("s", *["degC"] * 3, "A"), "tWHAI"
-                )
+                for name, unit, c in zip(("time", *PLACES, "current"), ("s", *["degC"] * 3, "A"), "tWHAI")
             ],
         }
     ),
-    "wanted and read in a group": ",Temperatures,,,Current,\n"
-    + of(("t [s]", "Winding °C", "Frame °C", "Room °C", "Soll A", "Ist A"), "tWHAHI"),
-    "spots of a camera": of(("t [s]", "Bx1 winding [C]", "El1 frame [C]", "Sp1 ambient [C]", "I [A]"), "tWHAI"),
-    "a signal in every row": "".join(
-        ",".join([name, *(f"{v:.2f}" for v in S[c])]) + "\n" for name, c in zip(PLAIN, "tWHAI", strict=True)
+    "wanted and read in a group": of(
+        ",Temperatures,,,Current,\nt [s],Winding °C,Frame °C,Room °C,Soll A,Ist A", "tWHAHI"
     ),
-    "columns told by their numbers": "".join(f"# column {k + 1}: {name}\n" for k, name in enumerate(PLAIN))
-    + of([], "tWHAI").lstrip("\n"),
-    "an estimate of no part, and a spread": of((*PLAIN, "Motor temp estimated [C]", "T_winding_Std [C]"), "tWHAIHB"),
-    "a model beside readings": of((*PLAIN, "T_winding_model [C]", "T_frame_est [C]"), "tWHAIHB"),
+    "spots of a camera": of("t [s],Bx1 winding [C],El1 frame [C],Sp1 ambient [C],I [A]"),
+    "a signal in every row": "".join(
+        ",".join([name, *(f"{v:.2f}" for v in S[c])]) + "\n" for name, c in zip(PLAIN.split(","), "tWHAI", strict=True)
+    ),
+    "columns told by their numbers": "".join(f"# column {k}: {n}\n" for k, n in enumerate(PLAIN.split(","), 1))
+    + of("").lstrip("\n"),
+    "an estimate of no part, and a spread": of(f"{PLAIN},Motor temp estimated [C],T_winding_Std [C]", "tWHAIHB"),
+    "a model beside readings": of(f"{PLAIN},T_winding_model [C],T_frame_est [C]", "tWHAIHB"),
 }
 
 
