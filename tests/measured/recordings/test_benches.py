@@ -95,11 +95,6 @@ def test_a_file_of_several_runs_is_as_many_tests(tmp_path, sign):
     assert "3 tests, one from each start on" in runs[0][0].notes[-1]
 
 
-def test_a_clock_that_turns_over_starts_nothing_anew(tmp_path):
-    with pytest.raises(InputError, match="runs back"):
-        read_runs(read(tmp_path, **{"t [s]": T % 60, "T_winding [°C]": 20 + T}))
-
-
 def test_where_an_input_is_unknown_for_long_the_longest_part_is_the_test(tmp_path):
     ((source, clock),) = read_runs(read(tmp_path, **{"t [s]": 100 * T, "T_winding [°C]": 20 + T, "I [A]": T}))
     current = np.where((T > 30) & (T < 50), np.nan, T)

@@ -526,9 +526,3 @@ def test_a_reading_of_all_rows_of_an_instant_in_a_table_without_names(tmp_path):
     assert found["temp_bedroom"][0].place not in ("", "ambient")
     assert [g.quantity for g, _ in found.values()].count("power") == 2
     assert runs[0][0].numbers("column 4") == pytest.approx(5 + 0.1 * np.arange(40))
-
-
-def test_percents_without_a_name_are_no_temperatures(tmp_path):
-    (tmp_path / "a.csv").write_text("".join(f"{29 + k // 9}%,{885 + k}000,{1598098561 + 60 * k}\n" for k in range(N)))
-    with pytest.raises(InputError, match="no column is a temperature"):
-        read(tmp_path / "a.csv")

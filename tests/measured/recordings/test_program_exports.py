@@ -138,19 +138,6 @@ def test_a_power_in_a_torques_unit_is_doubted(tmp_path):
     assert "a power" in found["Power [N.mm]"].doubt
 
 
-def test_seconds_since_1970_without_a_name_are_a_clock_where_they_run_back(tmp_path):
-    times = np.tile(np.arange(T.size // 3), 3) * 3600 + 1692576000
-    rows = [f"{t},tank,Tank {k},{v:.2f}" for k, (t, v) in enumerate(zip(times.tolist(), W, strict=False))]
-    (tmp_path / "a.csv").write_text("\n".join(rows) + "\n")
-    with pytest.raises(InputError, match="the clock runs back"):
-        read_runs(tmp_path / "a.csv")
-
-
-def test_a_refusal_names_columns_that_nobody_understood(tmp_path):
-    with pytest.raises(InputError, match=r"'QX', 'QY': neither name nor unit.*--place QX=PLACE"):
-        read(tmp_path, "t [s],QX,QY\n" + body(T, 1000 + W, 900 * J))
-
-
 def test_means_and_limits_over_the_readings_are_left_out_and_said(tmp_path):
     """A clock that runs back later is refused, as before."""
     rows = body(T, W, J).splitlines()
@@ -221,22 +208,6 @@ def test_a_unit_may_stand_before_a_name_or_be_of_the_old_world(tmp_path):
     found, source = read(tmp_path, "t [s],T_coil [C],Heater (BTU/h)\n" + body(T, W, 3412.14 * J / 9))
     assert found["Heater (BTU/h)"].feeds == "power_W"
     assert in_memory(source, found["Heater (BTU/h)"]).max() == pytest.approx(1000.0, rel=1e-3)
-
-
-@pytest.mark.parametrize(
-    ("content", "cause"),
-    [
-        (
-            "".join(f"{k + 1:5d} {20 * k}.013 DT 0181 Rx - 8 1A 0{k} FF 00 2C 00 7B 00\n" for k in range(9)),
-            "frames of a bus",
-        ),
-        ("PK\3\4\0\0", "is packed, as a spreadsheet .ods"),
-    ],
-)
-def test_what_holds_no_table_is_refused_by_what_it_is(tmp_path, content, cause):
-    (tmp_path / "a.trc").write_text(content)
-    with pytest.raises(InputError, match=cause):
-        read_runs(tmp_path / "a.trc")
 
 
 def test_whole_numbers_between_blanks_are_no_frames(tmp_path):

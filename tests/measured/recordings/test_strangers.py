@@ -26,7 +26,7 @@ from thermoscope.console.summary import limited_lines
 from validation.comparison.compare import compare
 
 S = signals(5.0)
-S["K"], S["k"] = S["W"] + 273.15, 1000 * S["t"]
+S["K"], S["F"], S["x"] = S["W"] + 273.15, 32 + 1.8 * S["W"], np.where(S["t"] == 50, -400.0, S["W"])
 NAMES = ("Winding U", "Ambient", "Current")
 
 
@@ -69,6 +69,73 @@ def test_a_place_without_a_column_is_refused_with_its_neighbour(tmp_path):
         places(["T_Wickl_U"])
 
 
+RANGE = range(90)
+REFUSED = {
+    "rises alone": (
+        table("t in s,Übertemperatur Wicklung in K,I in A", S["t"], S["W"] - 22, S["I"]),
+        "'Übertemperatur Wicklung in K' is left out: a difference of temperatures",
+    ),
+    "a room and the instrument": (
+        table("t [s],Room temp [C],Internal temp [C],I [A]", *(S[c] for c in "tAWI")),
+        r"no column is a temperature.*'Internal temp \[C\]' is left out: of the inst",
+    ),
+    "a cryostat": (
+        table("t [s],T [K],sigma_T [K]", S["t"], 0.02 + S["t"] / 1e6, S["t"] / 1e6),
+        r"'T \[K\]' is left out: -27\d.* as temperature cannot be right",
+    ),
+    "millikelvins": (
+        table("t [s],MXC [mK],Still [mK]", S["t"], S["W"], 700 + S["W"]),
+        r"'MXC \[mK\]' is left out: -273.* as temperature cannot be right",
+    ),
+    "names that nobody understood": (
+        table("t [s],QX,QY", S["t"], 1000 + S["W"], 900 * S["I"]),
+        "'QX', 'QY': neither name nor unit.*--place QX=PLACE",
+    ),
+    "percents without a name": (
+        "".join(f"{29 + k // 9}%,{885 + k}000,{1598098561 + 60 * k}\n" for k in RANGE),
+        "no column is a temperature",
+    ),
+    "rows that are days apart": (
+        "date,T_winding [C]\n" + "".join(f"2026-03-{1 + 2 * k:02d},{60 + k}\n" for k in range(12)),
+        "172800 s apart, too far",
+    ),
+    "instants alone before whole numbers": (
+        "".join(f"28.03.2026 10:00:{k:02d} {89 - 8 * (k > 2)} {93 - 10 * (k > 2)}\n" for k in range(7)),
+        "neither name nor unit",
+    ),
+    # whether the first column has no name, or a comma stands in a number, nobody can tell
+    "a number more than names, first": (
+        "t [s],T_coil [C],T_amb [C],I [A]\n" + "".join(f"{3 * k + 7},{5 * k},{20 + k},22,3\n" for k in range(9)),
+        "5 values under 4 names",
+    ),
+    "a number more than names": (
+        "t [s],T_coil [C],T_amb [C],I [A]\n" + "".join(f"{5 * k},{20 + k},5,22,3\n" for k in range(9)),
+        "5 values under 4 names",
+    ),
+    "a clock that was set back": (
+        "t [s],T_coil [C]\n" + "".join(f"{6 * k - 400 * (k > 60)},{20 + k}\n" for k in range(120)),
+        "runs back by 394 s in row 62",
+    ),
+    "a clock that turns over": ("t [s],T_coil [C]\n" + "".join(f"{2 * k % 60},{20 + k}\n" for k in RANGE), "runs back"),
+    "seconds since 1970 without a name that run back": (
+        "".join(f"{1692576000 + 3600 * (k % 30)},tank,Tank {k},{20 + k}\n" for k in RANGE),
+        "the clock runs back",
+    ),
+    "frames of a bus": (
+        "".join(f"{k + 1:5d} {20 * k}.013 DT 0181 Rx - 8 1A 0{k} FF 00 2C 00 7B 00\n" for k in range(9)),
+        "frames of a bus",
+    ),
+    "a package": ("PK\3\4\0\0", "is packed, as a spreadsheet .ods"),
+}
+
+
+@pytest.mark.parametrize("kind", REFUSED)
+def test_what_is_no_recording_of_a_machine_is_refused_by_what_it_is(tmp_path, kind):
+    content, words = REFUSED[kind]
+    with pytest.raises(InputError, match=words):
+        written(tmp_path, content)
+
+
 @pytest.mark.parametrize(
     ("header", "columns", "words"),
     [
@@ -98,6 +165,12 @@ def test_a_place_without_a_column_is_refused_with_its_neighbour(tmp_path):
             "The winding was not placed: 'T_winding [V]' looks like winding",
         ),
         ("t [s],I [A],T_Lager_AS [°C],room [°C]", "tIBA", "No winding is measured."),
+        (
+            "t [s],I [A],Tmotor [°C],T_case [°C]",
+            "tIxH",
+            "'Tmotor [°C]' is left out: -400 as temperature cannot be right",
+        ),
+        ("t [s],temperature,current", "tFI", "'temperature': or degF, by its values"),
     ],
 )
 def test_what_is_missing_stands_in_the_first_line(tmp_path, header, columns, words, capsys):
@@ -375,13 +448,6 @@ def test_two_recorders_of_one_input_are_one_input(tmp_path, capsys):
     }
 
 
-def test_signals_whose_times_have_no_order_are_refused(tmp_path):
-    rows = [f"28.03.26 12:00:{58 - 2 * k + (name == 'I'):02d},{name},{k}" for name in ("T_w", "I") for k in range(29)]
-    (tmp_path / "a.csv").write_text("\n".join(["time_s,sensor,value", *rows]) + "\n")
-    with pytest.raises(InputError, match="runs back"):
-        clock_of(read_source(tmp_path / "a.csv"))
-
-
 def test_rows_out_of_order_are_sorted_where_that_makes_an_even_clock(tmp_path):
     """Databases write the newest first; numbers that fall may count down, and a clock that starts anew is two tests."""
     stamps = [f"2026-03-28 12:{k // 60:02d}:{k % 60:02d}" for k in range(90)]
@@ -418,11 +484,6 @@ def test_tenths_of_degrees_are_no_kelvin(tmp_path, capsys):
     source = read_source(tmp_path / "b.csv")
     assert source.notes == ("b.csv: 'T_winding [0.1°C]' is read in units of 0.1 °C",)
     assert "T_b" in source.labels["T_b [x10 °C]"]
-
-
-def test_a_recording_of_rises_alone_is_refused_by_their_name(tmp_path):
-    with pytest.raises(InputError, match=r"'Übertemperatur Wicklung in K' is left out: a difference of temperatures"):
-        written(tmp_path, table("t in s,Übertemperatur Wicklung in K,I in A", S["t"], S["W"] - 22, S["I"]))
 
 
 def test_channels_are_called_what_their_settings_call_them(tmp_path):
@@ -638,22 +699,6 @@ def test_a_winding_a_frame_the_room_and_a_current(tmp_path, kind):
     assert test.inputs["current_A"] == pytest.approx(S["I"], abs=0.006)
 
 
-def test_rows_of_a_clock_that_was_set_back_are_not_shuffled_into_each_other(tmp_path):
-    stamps = [6 * k - 400 * (k > 60) for k in range(120)]
-    (tmp_path / "a.csv").write_text("t [s],T_coil [C]\n" + "".join(f"{t},{20 + k}\n" for k, t in enumerate(stamps)))
-    with pytest.raises(InputError, match="runs back by 394 s in row 62"):
-        read_runs(tmp_path / "a.csv")
-
-
-@pytest.mark.parametrize("end", ["first", "decimal comma"])
-def test_one_number_more_than_names_is_refused(tmp_path, end):
-    """Whether the first column has no name, or a comma stands in a number, nobody can tell."""
-    rows = [f"{3 * k + 7},{5 * k},{20 + k},22,3" if end == "first" else f"{5 * k},{20 + k},5,22,3" for k in range(9)]
-    (tmp_path / "a.csv").write_text("t [s],T_coil [C],T_amb [C],I [A]\n" + "\n".join(rows))
-    with pytest.raises(InputError, match="5 values under 4 names"):
-        read_source(tmp_path / "a.csv")
-
-
 def test_lines_without_the_names_of_most_are_no_rows(tmp_path):
     """A serial monitor's log of a sketch that first says what it found."""
     rows = [(f"12:{k // 12:02d}:{5 * k % 60:02d}.120", w, i) for k, (w, i) in enumerate(zip(S["W"], S["I"]))]
@@ -688,12 +733,6 @@ def test_one_bad_reading_costs_one_reading_whatever_the_span_of_its_column(tmp_p
     assert np.nanmax(y) == pytest.approx(hot.max(), abs=0.006)
 
 
-def test_a_temperature_that_cannot_be_stands_in_the_first_line(tmp_path, capsys):
-    text = table("t [s],Tmotor [°C],T_case [°C],I [A]", S["t"], np.where(S["t"] == 50, -400.0, S["W"]), S["H"], S["I"])
-    written(tmp_path, text)
-    assert capsys.readouterr().out.startswith("'Tmotor [°C]' is left out: -400 as temperature cannot be right")
-
-
 @pytest.mark.parametrize(
     "word", ["DMD", "Demand", "Cmd", "Req", "Soll", "Consigne", "Consigna", "impostata", "设定", "設定"]
 )
@@ -721,11 +760,6 @@ def test_the_temperature_of_the_instrument_is_none_of_the_machine(tmp_path, own,
         "of the instrument itself or another device, by its name"
         in " ".join(capsys.readouterr().out.split()).partition(": 1 test")[0]
     )
-
-
-def test_of_a_room_and_the_instrument_alone_there_is_no_machine(tmp_path):
-    with pytest.raises(InputError, match=r"no column is a temperature.*'Internal temp \[C\]' is left out: of the inst"):
-        written(tmp_path, table("t [s],Room temp [C],Internal temp [C],I [A]", *(S[c] for c in "tAHI")))
 
 
 CHINESE = ("时间(s)", "绕组温度(℃)", "机壳温度(℃)", "环境温度(℃)", "定子电流(A)", "状态")
@@ -885,12 +919,6 @@ def test_vessels_that_one_thermometer_reads_in_turn_are_columns(tmp_path):
     assert not any("hold until" in note for note in read_runs(tmp_path / "a.csv")[0][0].notes)
 
 
-def test_rows_that_are_days_apart_are_refused_by_their_file(tmp_path):
-    lines = [f"2026-03-{1 + 2 * k:02d},{60 + k}" for k in range(12)]
-    with pytest.raises(InputError, match=r"172800 s apart, too far"):
-        of_lines(tmp_path, ["date,T_winding [C]", *lines])
-
-
 @pytest.mark.parametrize("most", [255, 1023])
 def test_whole_bytes_of_a_heater_and_a_fan_are_shares(tmp_path, most):
     duty, steps = most * (np.arange(len(S["t"])) // 30 % 2), np.arange(len(S["t"])) // 20 % 9
@@ -914,17 +942,6 @@ def test_without_names_readings_of_tenths_are_temperatures_and_few_whole_numbers
     assert [g.quantity for g in guesses(source, ["column 4"], Target())] == ["temperature", "share", ""]
 
 
-def test_a_cryostat_is_refused_by_its_readings(tmp_path):
-    with pytest.raises(InputError, match=r"'T \[K\]' is left out: -27\d.* as temperature cannot be right"):
-        written(tmp_path, table("t [s],T [K],sigma_T [K]", S["t"], 0.02 + S["t"] / 1e6, S["t"] / 1e6))
-
-
-def test_columns_of_instants_alone_before_whole_numbers_end_in_a_message(tmp_path):
-    lines = [f"28.03.2026 10:00:{k:02d} {89 - 8 * (k > 2)} {93 - 10 * (k > 2)}" for k in range(7)]
-    with pytest.raises(InputError, match="neither name nor unit"):
-        of_lines(tmp_path, lines)
-
-
 def test_the_sun_is_an_input_in_parts_of_1000_watts(tmp_path):
     header = "t [s],T_ambient [C],T_module [C],{}"
     folder, _ = written(tmp_path, table(header.format("Irradiance [W/m2]"), S["t"], S["A"], S["W"], 80 * S["I"]))
@@ -932,16 +949,6 @@ def test_the_sun_is_an_input_in_parts_of_1000_watts(tmp_path):
     (tmp_path / "made").rename(tmp_path / "before")
     written(tmp_path, table(header.format("Solar radiation (W/m^2)"), S["t"], S["A"], S["W"], 80 * S["I"]))
     assert goes(json.loads((tmp_path / "new.json").read_text()))["Solar radiation (W/m^2)"] == "share_percent"
-
-
-def test_one_temperature_that_starts_near_70_without_a_unit_is_doubted(tmp_path, capsys):
-    written(tmp_path, table("t [s],temperature,current", S["t"], 32 + 1.8 * S["W"], S["I"]))
-    assert "'temperature': or degF, by its values" in " ".join(capsys.readouterr().out.split())
-
-
-def test_millikelvins_are_refused_by_their_readings(tmp_path):
-    with pytest.raises(InputError, match=r"'MXC \[mK\]' is left out: -273.* as temperature cannot be right"):
-        written(tmp_path, table("t [s],MXC [mK],Still [mK]", S["t"], S["W"], 700 + S["W"]))
 
 
 @pytest.mark.parametrize("line", ["{d}@10:{m:02d}:{s} - Temp Top :{c:.2f} C"])
