@@ -108,9 +108,13 @@ def test_a_clock_that_slips_for_one_row_costs_that_row(tmp_path):
     at = [60 * k for k in range(240)]
     slips = [max(s - 180, 0) if k == 120 else s for k, s in enumerate(at)]
     back = [s - 1800 * (k >= 120) for k, s in enumerate(at)]
-    slips, back = ([f"2025-03-01 {s // 3600:02d}:{s // 60 % 60:02d}:{s % 60:02d}" for s in of] for of in (slips, back))
+    two = [s - 180 * (k in (120, 121)) for k, s in enumerate(at)]
+    slips, *backs = (
+        [f"2025-03-01 {s // 3600:02d}:{s // 60 % 60:02d}:{s % 60:02d}" for s in of] for of in (slips, back, two)
+    )
     [(_, clock)] = read_runs(file_of(tmp_path, "Time,T [°C],I [A]", slips))
     assert np.isnan(clock.seconds).sum() == 1
     assert "1 rows whose clock runs back" in clock.doubt
-    with pytest.raises(InputError, match="runs back"):
-        read_runs(file_of(tmp_path, "Time,T [°C],I [A]", back))
+    for stamps in backs:
+        with pytest.raises(InputError, match="runs back"):
+            read_runs(file_of(tmp_path, "Time,T [°C],I [A]", stamps))

@@ -109,11 +109,12 @@ def test_a_sensor_that_follows_fast_asks_for_short_steps():
     """The winding's own time constant is 58 s, the housing's half an hour: one sensor at either."""
     net, (time, inputs) = two_bodies(), switching()
 
-    def chosen(name, wished=None):
-        seen = [(name, net.place(name).mean, 0.05, 0.0)]
+    def chosen(name, wished=None, lag_s=0.0):
+        seen = [(name, net.place(name).mean, 0.05, lag_s)]
         return sample_step(net, time, inputs, {"ambient": 20.0}, seen, 60.0, wished)
 
     assert chosen("winding").step_s < chosen("housing").step_s == 10.0  # no wider than the instants of a fit
+    assert chosen("winding").step_s < chosen("winding", lag_s=600.0).step_s  # one that follows slowly
     assert chosen("winding").node == "winding"
     assert chosen("winding").time_constant_s == pytest.approx(58.0, rel=0.1)
     assert chosen("housing", 5.0).step_s == 5.0
@@ -127,6 +128,8 @@ def test_modes_and_what_a_mean_leaves_of_them():
     modes = Modes.of(np.array([[2.0]]), np.array([4000.0]))
     assert modes.rate == pytest.approx([5e-4])
     assert (modes.shape @ modes.weight).real == pytest.approx(np.array([[0.5]]))
+    G = np.array([[2.0, -1.0], [-1.0, 3.0]])  # the first has no capacity: what heat warms both by is the same
+    assert (m := Modes.of(G, np.array([0.0, 4000.0]))).shape @ m.weight == pytest.approx(np.linalg.inv(G))
     for x in (0.3, 3.0, 30.0):
         mean = quad(lambda t, x=x: -np.expm1(-x * t), 0.0, 0.5)[0]
         assert interpolation_error(np.array([x]))[0] == pytest.approx(abs(mean + np.expm1(-x) / 12.0), abs=1e-9)

@@ -31,8 +31,13 @@ NAMES = ("Winding U", "Ambient", "Current")
 
 
 def table(header, *columns, sep=","):
+    """Text of columns under their names."""
     cells = [[c] * len(S["t"]) if isinstance(c, str) else [f"{v:.2f}" for v in c] for c in columns]
     return "\n".join([header, *(sep.join(row) for row in zip(*cells))]) + "\n"
+
+
+def of(header, letters="tWHAI", sep=","):
+    return table(header, *(S[c] for c in letters), sep=sep)
 
 
 def written(tmp_path, text, **wishes):
@@ -51,7 +56,7 @@ def test_a_winding_that_was_left_out_stands_in_the_first_line(tmp_path, capsys):
         '[links.a]\nbetween = ["frame", "ambient"]\nG_W_K = 2\n[links.b]\nbetween = ["head", "frame"]\nG_W_K = 5\n'
         '[losses.heat]\nkind = "constant"\nat = "head"\nP_W = 50\nof = { input = "current_A", at = 9, exponent = 2 }\n'
     )
-    text = table("t [s],I [A],T_Wickl_U,frame [°C],room [°C]", S["t"], S["I"], S["W"], S["H"], S["A"])
+    text = of("t [s],I [A],T_Wickl_U,frame [°C],room [°C]", "tIWHA")
     _, document = written(tmp_path, text, network=model)
     first = " ".join(capsys.readouterr().out.split())
     assert first.startswith("The winding was not placed: 'T_Wickl_U' looks like winding; --place T_Wickl_U=PLACE")
@@ -64,7 +69,7 @@ def test_a_winding_that_was_left_out_stands_in_the_first_line(tmp_path, capsys):
 
 def test_a_place_without_a_column_is_refused_with_its_neighbour(tmp_path):
     with pytest.raises(InputError, match=r"no column 'T_Wikl_U'.*did you mean 'T_Wickl_U'"):
-        written(tmp_path, table("t [s],I [A],T_Wickl_U", S["t"], S["I"], S["W"]), places={"T_Wikl_U": "winding"})
+        written(tmp_path, of("t [s],I [A],T_Wickl_U", "tIW"), places={"T_Wikl_U": "winding"})
     with pytest.raises(InputError, match="not of the form COLUMN=PLACE"):
         places(["T_Wickl_U"])
 
@@ -76,7 +81,7 @@ REFUSED = {
         "'Übertemperatur Wicklung in K' is left out: a difference of temperatures",
     ),
     "a room and the instrument": (
-        table("t [s],Room temp [C],Internal temp [C],I [A]", *(S[c] for c in "tAWI")),
+        of("t [s],Room temp [C],Internal temp [C],I [A]", "tAWI"),
         r"no column is a temperature.*'Internal temp \[C\]' is left out: of the inst",
     ),
     "a cryostat": (
@@ -174,12 +179,12 @@ def test_what_is_no_recording_of_a_machine_is_refused_by_what_it_is(tmp_path, ki
     ],
 )
 def test_what_is_missing_stands_in_the_first_line(tmp_path, header, columns, words, capsys):
-    written(tmp_path, table(header, *(S[c] for c in columns)))
+    written(tmp_path, of(header, columns))
     assert words in " ".join(capsys.readouterr().out.split()).partition(": 1 test")[0]
 
 
 def test_a_comparison_repeats_the_doubts_until_they_leave_the_case(tmp_path, capsys):
-    folder, _ = written(tmp_path, table("t [s],I,T_winding [°C],T_room [°C]", S["t"], S["I"], S["W"], S["A"]))
+    folder, _ = written(tmp_path, of("t [s],I,T_winding [°C],T_room [°C]", "tIWA"))
     case = folder.settings.path / "case.toml"
     assert capsys.readouterr().out.startswith(doubt := "No unit: 'I' is taken in A.")
     compare_command(str(case.parent), None)
@@ -190,14 +195,13 @@ def test_a_comparison_repeats_the_doubts_until_they_leave_the_case(tmp_path, cap
 
 
 def test_a_machine_judged_by_its_bearing_alone_is_said_by_every_comparison(tmp_path, capsys):
-    folder, _ = written(tmp_path, table("t [s],I [A],T_Lager [°C],T_room [°C]", S["t"], S["I"], S["B"], S["A"]))
+    folder, _ = written(tmp_path, of("t [s],I [A],T_Lager [°C],T_room [°C]", "tIBA"))
     capsys.readouterr()
     compare_command(str(folder.settings.path), None)
     assert "is measured at lager alone" in " ".join(capsys.readouterr().out.split())[:60]
     assert any("measured at lager alone: no reading says how warm the winding is" in note for note in folder.notes)
     with_winding, _ = written(
-        (tmp_path / "b").mkdir() or tmp_path / "b",
-        table("t [s],I [A],T_Lager [°C],T_Wicklung [°C]", S["t"], S["I"], S["B"], S["W"]),
+        (tmp_path / "b").mkdir() or tmp_path / "b", of("t [s],I [A],T_Lager [°C],T_Wicklung [°C]", "tIBW")
     )
     assert not any("alone" in note for note in with_winding.notes)
 
@@ -250,7 +254,7 @@ def test_all_temperatures_in_another_unit_are_seen_by_the_doctor(tmp_path, facto
     from thermoscope.case_folder.doctor import examined
     from thermoscope.case_folder.folder import patient_of
 
-    folder, _ = written(tmp_path, table("t [s],I [A],T_winding [°C],T_room [°C]", S["t"], S["I"], S["W"], S["A"]))
+    folder, _ = written(tmp_path, of("t [s],I [A],T_winding [°C],T_room [°C]", "tIWA"))
     network = folder.case.model.network
     found = lambda: [f.what for f in examined([patient_of(folder.settings.tests[0])], network)]  # noqa: E731
     assert not any(unit in what for what in found())
@@ -439,7 +443,7 @@ def test_a_second_file_says_what_numbers_and_short_names_mean(tmp_path):
 
 def test_two_recorders_of_one_input_are_one_input(tmp_path, capsys):
     for name, more in (("a", "I [A],room [°C],T_winding"), ("b", "Current [A],T_frame [°C],T_cover [°C]")):
-        (tmp_path / f"{name}.csv").write_text(table(f"time_s,{more}", *(S[c] for c in "tIAW")))
+        (tmp_path / f"{name}.csv").write_text(of(f"time_s,{more}", "tIAW"))
     out, document = tmp_path / "made", tmp_path / "new.json"
     assert new([tmp_path / "a.csv", tmp_path / "b.csv"], Wishes(out=out, yes=True), str(document)) == 0
     (test,) = json.loads(document.read_text())["tests"]
@@ -480,7 +484,7 @@ def test_tenths_of_degrees_are_no_kelvin(tmp_path, capsys):
     """Nor is a unit with a number in it left to guesses."""
     written(tmp_path, table("t [s],T_winding,T_housing", S["t"], 10 * S["W"], 10 * S["W"] + 1))
     assert "'T_winding', 'T_housing': is it in other units?" in capsys.readouterr().out.replace("\n", " ")
-    (tmp_path / "b.csv").write_text(table("t [s],T_winding [0.1°C],T_b [x10 °C]", S["t"], S["W"], S["W"]))
+    (tmp_path / "b.csv").write_text(of("t [s],T_winding [0.1°C],T_b [x10 °C]", "tWW"))
     source = read_source(tmp_path / "b.csv")
     assert source.notes == ("b.csv: 'T_winding [0.1°C]' is read in units of 0.1 °C",)
     assert "T_b" in source.labels["T_b [x10 °C]"]
@@ -580,11 +584,6 @@ PLAIN = "t [s],T_winding [C],T_frame [C],T_amb [C],I [A]"
 SHORT = "No.;;T winding;T frame;T room;Current\nUnit:;;°C;°C;°C;A\nDate;Time;;;;\n"
 LEGEND = "# T1 = Winding head\n# T2 = Frame\n# T3 = Ambient air\n# I1 = Phase current\n"
 BED = "Test bed 3/"
-
-
-def of(header, letters="tWHAI", sep=","):
-    """Text of columns under their names."""
-    return table(header, *(S[c] for c in letters), sep=sep)
 
 
 def each(row, letters="WHAI"):
@@ -738,7 +737,7 @@ def test_one_bad_reading_costs_one_reading_whatever_the_span_of_its_column(tmp_p
 )
 def test_a_set_point_gives_way_to_a_reading_and_is_doubted_without_one(tmp_path, word, capsys):
     wanted = f"I {word} [A]"
-    written(tmp_path, table(f"t [s],{wanted},T_winding [°C],T_room [°C]", *(S[c] for c in "tIWA")))
+    written(tmp_path, of(f"t [s],{wanted},T_winding [°C],T_room [°C]", "tIWA"))
     assert f"'{wanted}': a set point, no reading" in " ".join(capsys.readouterr().out.split())
     (tmp_path / "made").rename(tmp_path / "before")
     text = table(f"t [s],{wanted},I 1 [A],T_winding [°C],T_room [°C]", S["t"], S["I"] + 1, *(S[c] for c in "IWA"))
@@ -752,10 +751,10 @@ def test_a_set_point_gives_way_to_a_reading_and_is_doubted_without_one(tmp_path,
     "own", ["CJC_temp", "T_Vergleichsstelle", "Soudure froide", "Cold junction", "Giunto freddo", "Board temp", "CPU_T"]
 )
 def test_the_temperature_of_the_instrument_is_none_of_the_machine(tmp_path, own, capsys):
-    written(tmp_path, table(f"t [s],T_coil [°C],{own} [°C],T_room [°C],I [A]", *(S[c] for c in "tWAAI")))
+    written(tmp_path, of(f"t [s],T_coil [°C],{own} [°C],T_room [°C],I [A]", "tWAAI"))
     assert capsys.readouterr().out.startswith(f"'{own} [°C]' is left out: of the instrument itself")
     (tmp_path / "made").rename(tmp_path / "before")
-    written(tmp_path, table(f"t [s],{own} [°C],I [A]", *(S[c] for c in "tWI")))
+    written(tmp_path, of(f"t [s],{own} [°C],I [A]", "tWI"))
     assert (
         "of the instrument itself or another device, by its name"
         in " ".join(capsys.readouterr().out.split()).partition(": 1 test")[0]
@@ -792,7 +791,7 @@ def test_a_code_page_is_told_by_words_of_headers_whatever_a_column_repeats(tmp_p
     ],
 )
 def test_units_that_are_spelled_out_and_a_speed_in_an_unknown_one(tmp_path, header, unit, quantity):
-    (tmp_path / "a.csv").write_text(table(f"t [s],{header},T_coil [°C]", S["t"], S["W"], S["W"]))
+    (tmp_path / "a.csv").write_text(of(f"t [s],{header},T_coil [°C]", "tWW"))
     g = guesses(read_source(tmp_path / "a.csv"), ["t [s]"], Target())[0]
     assert (g.quantity, g.unit) == (quantity, unit)
     assert bool(quantity) or "unit 'knots' unknown" in g.doubt
@@ -835,7 +834,7 @@ def test_stages_and_shares_of_a_flow_cool_and_heat_nothing(tmp_path, header):
 
 def test_a_quantity_is_no_place_of_a_network_that_is_there(tmp_path):
     """--place with a word that is neither: the message lists what the model has."""
-    (tmp_path / "a.csv").write_text(table("t [s],I [A],winding [°C],room [°C]", S["t"], S["I"], S["W"], S["A"]))
+    (tmp_path / "a.csv").write_text(of("t [s],I [A],winding [°C],room [°C]", "tIWA"))
     model = tmp_path / "network.toml"
     model.write_text(
         '[network]\nname = "n"\nboundaries = ["ambient"]\n[nodes.winding]\nC_J_K = 900\n[links.a]\n'
@@ -856,7 +855,7 @@ def test_a_table_s_name_over_a_current_makes_no_temperature_of_it(tmp_path):
 
 
 def test_a_header_may_name_more_than_its_rows_fill(tmp_path):
-    text = table("t [s],T_winding [degC],T_room [degC],I [A],T_spare [degC],Remark", *(S[c] for c in "tWAI"))
+    text = of("t [s],T_winding [degC],T_room [degC],I [A],T_spare [degC],Remark", "tWAI")
     case, _ = written(tmp_path, text)
     (test,) = case.case.tests
     assert [c.name for c in test.channels] == ["T_winding [degC]"]
