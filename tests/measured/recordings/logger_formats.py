@@ -10,6 +10,7 @@ from datetime import datetime, timedelta
 from functools import partial
 
 import numpy as np
+import openpyxl
 
 ROWS = 90
 BEGUN = datetime(2026, 3, 28, 12, 0, 10)
@@ -127,6 +128,18 @@ def beside(letter: str, sign: str):
 
 def korean(now: datetime) -> str:
     return f"{now:%Y-%m-%d} {'오전' if now.hour < 12 else '오후'} {(now.hour - 1) % 12 + 1}:{now:%M:%S}"
+
+
+def workbook(path, **sheets):
+    """A workbook of the rows of every sheet."""
+    book = openpyxl.Workbook()
+    book.remove(book.active)
+    for name, rows in sheets.items():
+        page = book.create_sheet(name)
+        for row in rows:
+            page.append(row)
+    book.save(path)
+    return path
 
 
 IWA, PWA = (";".join(NAMES[c] for c in letters) for letters in ("IWA", "PWA"))

@@ -3,8 +3,8 @@
 from datetime import datetime, time, timedelta
 
 import numpy as np
-import openpyxl
 import pytest
+from logger_formats import workbook
 
 from geom.description.roles import Role
 from geom.errors import InputError
@@ -106,29 +106,21 @@ def test_where_an_input_is_unknown_for_long_the_longest_part_is_the_test(tmp_pat
 
 def test_times_of_day_over_remarks_and_a_unit_alone_under_its_quantity(tmp_path):
     """A list by hand, whose last rows are signatures."""
-    book = openpyxl.Workbook()
     head = [["Time", "Voltage", None, None, "Current", None, None, "Input", "Speed", "Amb", "Coil"]]
     head += [["(hrs)", "R-Y", "Y-B", "B-R", "R", "Y", "B", "(kW)", "(rpm)", "(°C)", "(°C)"]]
     rows = [[time(10 + k // 2, 30 * (k % 2)), 415, 414, 416, 5, 4, 6, 2.5, 1480, 30.0, 30.0 + k] for k in range(9)]
-    for row in (*head, *rows, [], ["Rise by resistance 80 K"], ["Tested by", None, "Witness"]):
-        book.active.append(row)
-    book.save(tmp_path / "a.xlsx")
-    [(source, clock)] = read_runs(tmp_path / "a.xlsx")
+    rows = [*head, *rows, [], ["Rise by resistance 80 K"], ["Tested by", None, "Witness"]]
+    [(source, clock)] = read_runs(workbook(tmp_path / "a.xlsx", Sheet=rows))
     assert clock.seconds == pytest.approx(1800.0 * np.arange(9))
     assert "Input (kW)" in source.cells
 
 
 def test_sheets_with_the_same_columns_are_tests_and_others_are_named(tmp_path):
-    book, names = openpyxl.Workbook(), ["t [s]", "T_winding [°C]"]
+    names = ["t [s]", "T_winding [°C]"]
+    sheets = {"Sheet": [["step", "W"], *([k, 2] for k in range(4))]}
     for sheet, first in (("Run 1", 20.0), ("Run 2", 30.0)):
-        page = book.create_sheet(sheet)
-        for row in (names, *([t, first + t] for t in T[: 30 + int(first)].tolist())):
-            page.append(row)
-    for page, head in ((book.active, ["step", "W"]), (book.create_sheet("Words"), ["About", "this"])):
-        for row in (head, *([[k, 2] for k in range(4)] if head[0] == "step" else [])):
-            page.append(row)
-    book.save(tmp_path / "a.xlsx")
-    runs = read_runs(tmp_path / "a.xlsx")
+        sheets[sheet] = [names, *([t, first + t] for t in T[: 30 + int(first)].tolist())]
+    runs = read_runs(workbook(tmp_path / "a.xlsx", **sheets, Words=[["About", "this"]]))
     assert [source.numbers(names[1])[0] for source, _ in runs] == [20.0, 30.0]
     assert [note.partition(": ")[2] for note in runs[0][0].notes] == [
         "a test from each of the worksheets Run 1, Run 2",
@@ -139,20 +131,13 @@ def test_sheets_with_the_same_columns_are_tests_and_others_are_named(tmp_path):
 @pytest.mark.parametrize("clock", [float, lambda s: datetime(2026, 3, 28, 23, 58) + timedelta(seconds=s)])
 def test_a_sheet_for_each_signal_is_one_test(tmp_path, clock):
     """Each at its own times, of its own length and begun at its own instant; a summary is not a signal."""
-    book, truth = openpyxl.Workbook(), {}
-    book.active.append(["Summary", "of all"])
-    for sheet, unit, begin, step, rows in (
-        ("Winding", "°C", 0, 5, 60),
-        ("Raum", "°C", 10, 30, 12),
-        ("Strom", "A", 4, 2, 140),
-    ):
-        page = book.create_sheet(sheet)
-        page.append(["Zeit [s]" if clock is float else "Zeit", f"Wert [{unit}]"])
+    signals = {"Winding": ("°C", 0, 5, 60), "Raum": ("°C", 10, 30, 12), "Strom": ("A", 4, 2, 140)}
+    truth, sheets = {}, {"Sheet": [["Summary", "of all"]]}
+    for sheet, (unit, begin, step, rows) in signals.items():
         truth[sheet] = {begin + step * k: 20.0 + k for k in range(rows)}
-        for second, value in truth[sheet].items():
-            page.append([clock(second), value])
-    book.save(tmp_path / "a.xlsx")
-    [(source, at)] = read_runs(tmp_path / "a.xlsx")
+        head = ["Zeit [s]" if clock is float else "Zeit", f"Wert [{unit}]"]
+        sheets[sheet] = [head, *([clock(second), value] for second, value in truth[sheet].items())]
+    [(source, at)] = read_runs(workbook(tmp_path / "a.xlsx", **sheets))
     for sheet, readings in truth.items():
         (column,) = (c for c in source.columns if c.startswith(sheet))
         read = source.numbers(column)
@@ -162,14 +147,9 @@ def test_a_sheet_for_each_signal_is_one_test(tmp_path, clock):
 
 
 def test_sheets_of_signals_that_share_no_time_are_refused(tmp_path):
-    book = openpyxl.Workbook()
-    for sheet, begin in (("Winding", 0), ("Room", 900)):
-        page = book.create_sheet(sheet)
-        for row in (["t [s]", "value"], *([begin + t, 20 + t] for t in T.tolist())):
-            page.append(row)
-    book.save(tmp_path / "a.xlsx")
+    first, last = ([["t [s]", "value"], *([begin + t, 20 + t] for t in T.tolist())] for begin in (0, 900))
     with pytest.raises(InputError, match="never run at one time"):
-        read_runs(tmp_path / "a.xlsx")
+        read_runs(workbook(tmp_path / "a.xlsx", Winding=first, Room=last))
 
 
 def test_the_clocks_unit_behind_the_label_of_the_row_of_units():

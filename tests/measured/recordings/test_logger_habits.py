@@ -6,6 +6,7 @@ import tomllib
 
 import numpy as np
 import pytest
+from logger_formats import workbook
 
 from geom.errors import InputError
 from lumped.model.quantities import INPUTS
@@ -81,17 +82,8 @@ def test_tests_side_by_side_in_one_table(tmp_path, heads):
 
 
 def test_tests_one_under_another_with_their_header_again(tmp_path):
-    from openpyxl import Workbook
-
-    book = Workbook()
-    for _ in range(2):
-        book.active.append(["t [min]", "winding [°C]", "room [°C]", "I [A]"])
-        for row in zip(*(WARM[c].tolist() for c in "tWAI")):
-            book.active.append(row)
-        book.active.append([])
-        book.active.append(["Test 2", "rated"])
-    book.save(tmp_path / "a.xlsx")
-    runs = read_runs(tmp_path / "a.xlsx")
+    header, rows = ["t [min]", "winding [°C]", "room [°C]", "I [A]"], [*zip(*(WARM[c].tolist() for c in "tWAI"))]
+    runs = read_runs(workbook(tmp_path / "a.xlsx", Sheet=2 * [header, *rows, [], ["Test 2", "rated"]]))
     assert [clock.end_s for _, clock in runs] == [60 * T[-1]] * 2
 
 
@@ -132,17 +124,10 @@ def test_a_robot_s_velocity_is_in_rad_s(tmp_path, names, unit):
 
 
 def test_a_sheet_of_words_says_what_channels_are_and_a_load_read_less_often_has_no_gaps(tmp_path):
-    from openpyxl import Workbook
-
-    book = Workbook()
-    book.active.append(["t [min]", "TC1 [°C]", "TC2 [°C]", "I [A]"])
-    for i, row in enumerate(zip(*(WARM[c].tolist() for c in "tWAI"))):
-        book.active.append([*row[:3], row[3] if i % 3 == 0 else None])
-    legend = book.create_sheet("Plan")
-    for row in (("Kanal", "Stelle"), ("TC1", "Wicklung U"), ("TC2", "Halle")):
-        legend.append(row)
-    book.save(tmp_path / "a.xlsx")
-    document = written(tmp_path, tmp_path / "a.xlsx")
+    rows = [[*row[:3], None if i % 3 else row[3]] for i, row in enumerate(zip(*(WARM[c].tolist() for c in "tWAI")))]
+    legend = [("Kanal", "Stelle"), ("TC1", "Wicklung U"), ("TC2", "Halle")]
+    rows = [["t [min]", "TC1 [°C]", "TC2 [°C]", "I [A]"], *rows]
+    document = written(tmp_path, workbook(tmp_path / "a.xlsx", Sheet=rows, Plan=legend))
     assert [c["place"] for c in document["tests"][0]["columns"][:2]] == ["1-wicklung-u", "ambient"]
     assert "max_gap_s" in (tmp_path / "made/tests/a.toml").read_text()
 

@@ -2,14 +2,13 @@
 
 import json
 import tomllib
-import zipfile
 from dataclasses import replace
-from datetime import UTC, datetime
+from datetime import UTC, datetime, time, timedelta
 from pathlib import Path
 
 import numpy as np
 import pytest
-from logger_formats import signals
+from logger_formats import signals, workbook
 
 from geom.errors import InputError
 from measured.importing.aligned import Recording, longest_part
@@ -285,31 +284,17 @@ def test_two_doubts_of_one_file_are_both_said(tmp_path, capsys):
 
 
 def test_formulas_without_values_are_said(tmp_path):
-    import openpyxl
-
-    book = openpyxl.Workbook()
-    book.active.append(["t [s]", "T_winding [°C]", "I [A]"])
-    for k in range(20):
-        book.active.append([k, 20.0 + k, f"=B{k + 2}*2"])
-    book.save(tmp_path / "a.xlsx")
-    assert zipfile.is_zipfile(tmp_path / "a.xlsx")
-    assert any("20 formulas have no value" in note for note in read_source(tmp_path / "a.xlsx").notes)
+    rows = [["t [s]", "T_winding [°C]", "I [A]"], *([k, 20.0 + k, f"=B{k + 2}*2"] for k in range(20))]
+    notes = read_source(workbook(tmp_path / "a.xlsx", Sheet=rows)).notes
+    assert any("20 formulas have no value" in note for note in notes)
 
 
 def test_times_of_workbooks(tmp_path):
     """Spans and times of the day as cells have them."""
-    from datetime import time, timedelta
-
-    import openpyxl
-
-    for name, cell in (("span", lambda k: timedelta(seconds=90 * k)), ("day", lambda k: time(10, k, 30))):
-        book = openpyxl.Workbook()
-        book.active.append(["Time", "T_winding [°C]", "I [A]"])
-        for k in range(20):
-            book.active.append([cell(k), 20.0 + k, 5.0])
-        book.save(tmp_path / f"{name}.xlsx")
-        step = np.diff(clock_of(read_source(tmp_path / f"{name}.xlsx")).seconds)
-        assert step == pytest.approx(90.0 if name == "span" else 60.0)
+    for cell, step_s in ((lambda k: timedelta(seconds=90 * k), 90.0), (lambda k: time(10, k, 30), 60.0)):
+        rows = [["Time", "T_winding [°C]", "I [A]"], *([cell(k), 20.0 + k, 5.0] for k in range(20))]
+        source = read_source(workbook(tmp_path / "a.xlsx", Sheet=rows))
+        assert np.diff(clock_of(source).seconds) == pytest.approx(step_s)
 
 
 def test_channels_of_a_tdms_without_increments_have_the_times_of_their_channel(tmp_path):
