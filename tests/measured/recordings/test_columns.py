@@ -33,11 +33,20 @@ S |= {
     "l": S["H"] + 3.0 * np.sin(T),
 }
 S |= {"q": 4.0 + S["M"], "y": 0.5 * (A - 20.0), "u": W - 0.1, "a": A - 0.1, "i": A + 0.1, "Q": A + 15.0, "c": ON}
-S |= {"o": 1e4 + T, "w": W + np.sin(T), "d": (7.0 * T) % 360, "x": 11.5 + 1e-5 * T, "v": 3.7 + 0.01 * I}
+S |= {
+    "o": 1e4 + T,
+    "w": W + np.sin(T),
+    "d": (7.0 * T) % 360,
+    "x": 11.5 + 1e-5 * T,
+    "v": 3.7 + 0.01 * I,
+    "J": 60.0 + 0.1 * np.sin(T),
+}
 
 
 # Header but for its clock | its readings | where each goes, - for nowhere | doubts, each with the columns that have it
 GOES = """
+T_wdg [C],T_frame [C],T_xyz [C],I [A] | WHAI | wdg frame ambient current_A
+T_wdg [C],T_frame [C],T_xyz [C],I [A] | WHJI | wdg frame xyz current_A
 Camera [C],Parete esterna [C],Aria ambiente [C],I [A] | WHAI | camera housing ambient current_A
 i_rms,w_mech,T_load,T_winding,T_housing,T_amb | IrHWBA | current_A speed_rpm load winding housing ambient
 winding_temperature,living_room_temperature,outdoor_temperature,P [W] | WAYp | winding ambient - power_W

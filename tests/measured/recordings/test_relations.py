@@ -192,6 +192,8 @@ def test_a_clock_with_a_zone_beside_one_without(tmp_path):
     seconds, how = shift(first, other)
     assert seconds == 0.0
     assert "the whole hours are guessed" in how
+    late = record(tmp_path, {"Zeit": stamps[14:], "T_winding [°C]": W1[14:]}, "c.csv")
+    assert shift(first, late)[0] == 70.0
 
 
 def told(tmp_path, header, *columns):
