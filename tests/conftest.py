@@ -41,35 +41,53 @@ def pytest_addoption(parser: pytest.Parser) -> None:
     parser.addoption("--record", action="store_true", help=f"keep how long every file took in {DURATIONS.name}")
 
 
+def file_of(item: pytest.Item | pytest.TestReport) -> str:
+    return item.nodeid.split("::")[0]
+
+
 def pytest_runtest_logreport(report: pytest.TestReport) -> None:
-    spent[report.nodeid.split("::")[0]] += report.duration
+    spent[file_of(report)] += report.duration
 
 
 def pytest_sessionfinish(session: pytest.Session) -> None:
     if session.config.getoption("--record") and "PYTEST_XDIST_WORKER" not in os.environ:
-        known = json.loads(DURATIONS.read_text()) if DURATIONS.exists() else {}
-        kept = {file: seconds for file, seconds in known.items() if (ROOT / file).exists()}
-        kept |= {file: round(seconds, 1) for file, seconds in spent.items() if seconds >= 0.5}
+        kept = {file: seconds for file, seconds in durations().items() if (ROOT / file).exists()}
+        least = durations() if session.config.getoption("--turn") is not None else {}  # of a part of its tests
+        kept |= {f: max(round(seconds, 1), least.get(f, 0.0)) for f, seconds in spent.items() if seconds >= 0.5}
         DURATIONS.write_text(json.dumps(dict(sorted(kept.items(), key=lambda pair: -pair[1])), indent=0) + "\n")
 
 
-def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
-    """Of the nightly tests those whose turn it is; files with heavy tests begin.
+def durations() -> dict[str, float]:
+    """File -> seconds of its tests."""
+    return json.loads(DURATIONS.read_text()) if DURATIONS.exists() else {}
 
-    A heavy file that begins last keeps one of two workers waiting for its end.  First of all the rules of the house,
+
+def turns(files: set[str], seconds: dict[str, float]) -> dict[str, int]:
+    """File of nightly tests -> its turn: the longest first, each to the turn with the least to do so far."""
+    out, load = {}, [0.0] * PARTS
+    for file in sorted(files, key=lambda file: (-seconds.get(file, 0.0), file)):
+        out[file] = load.index(min(load))
+        load[out[file]] += seconds.get(file, 1.0)
+    return out
+
+
+def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
+    """Of the nightly tests those whose turn it is; files with heavy tests begin, the longest of them first.
+
+    A long file that begins last keeps one of two workers waiting for its end.  First of all the rules of the house,
     which run no network: in a new checkout one worker compiles the kernels meanwhile, and the other finds them.
     """
+    seconds = durations()
     turn, nightly = config.getoption("--turn"), [item for item in items if item.get_closest_marker("nightly")]
     for item in nightly:  # a new warning of a browser or a wheel's installer is no reason to stop a landing
         item.add_marker(pytest.mark.filterwarnings("default"))
     if turn is not None:
-        # Nightly tests whose turn it is not: of their files, in the order of their names, every fifth has its turn
-        files = sorted({item.path for item in nightly})
-        later = {item for item in nightly if files.index(item.path) % PARTS != turn % PARTS}
+        turn_of = turns({file_of(item) for item in nightly}, seconds)
+        later = {item for item in nightly if turn_of[file_of(item)] != turn % PARTS}
         config.hook.pytest_deselected(items=list(later))
         items[:] = [item for item in items if item not in later]
     heavy = {i.path for i in items if i.get_closest_marker("heavy") or i.get_closest_marker("nightly")}
-    items.sort(key=lambda item: (item.path not in heavy, item.path.parent.name != "house"))
+    items.sort(key=lambda i: (i.path not in heavy, i.path.parent.name != "house", -seconds.get(file_of(i), 0.0)))
 
 
 @pytest.fixture(scope="session", autouse=True)

@@ -81,6 +81,7 @@ def rises_of(test: Test, quantity: str) -> tuple[Any, Any, float]:
     return test.time[seen] / 60.0, (channel.y - test.boundaries["ambient"])[seen], channel.sigma_K
 
 
+@cache
 def paths() -> dict[str, TwoPaths]:
     """Test -> R_ext and R_w of the calibrated networks at the test's load."""
     out = {}

@@ -43,9 +43,7 @@ TAKEN = {
     "hust-ipmsm": (
         *PLAIN,
         *(words for words in DECLARED if words.partition(" ")[0] not in ("compare", "simulate")),
-        "picture losses",
-        "simulate --cycle s3-40 --no-bands",
-        "rate --limit winding=150 --no-bands",
+        *("picture losses", "simulate --cycle s3-40 --no-bands", "rate --limit winding=150 --no-bands"),
     ),
     "pmsm-bases": (
         *MESHED,
@@ -60,27 +58,14 @@ TAKEN = {
     "tefc-drive": ("simulate --cycle hoist --no-bands", "rate --limit winding=155 --cycle hoist --no-bands"),
     "road-test": (
         *MESHED,
-        "simulate --cycle overpass --no-bands",
-        "viewer",
-        "film",
-        "rate --limit winding=155 --no-bands",
+        *("simulate --cycle overpass --no-bands", "viewer", "film", "rate --limit winding=155 --no-bands"),
     ),
 }
 # Below, and in tests/geom, tests/extras/rating, tests/thermoscope/commands (build, optimise).
 MACHINE_COMMANDS = {"build", "import", "crosscheck", "screen", "machines", "optimise", "compare-designs"}
 # Of recordings that are not shipped, of what went before; tests/fleet, tests/thermoscope/commands (plan).
 NO_FILE = {
-    "new",
-    "quantities",
-    "protocol",
-    "law",
-    "answer",
-    "remove",
-    "undo",
-    "serve",
-    "plan",
-    "fleet",
-    "watch",
+    *("new", "quantities", "protocol", "law", "answer", "remove", "undo", "serve", "plan", "fleet", "watch"),
     "live",
 }
 

@@ -6,7 +6,7 @@ import shutil
 import tempfile
 import tomllib
 from collections.abc import Callable, Iterator
-from functools import cache
+from functools import cache, partial
 from pathlib import Path
 from typing import Any
 
@@ -44,6 +44,9 @@ STAND = "tests/stand.toml"
 
 def swap(file: str, old: str, new: str) -> Callable[[Path], None]:
     return lambda case: edited(case / file, old, new)
+
+
+sheet, network, settings = (partial(swap, file) for file in (STAND, "network.toml", "case.toml"))
 
 
 def cell(name: str, row: int, value: object) -> Callable[[Path], None]:

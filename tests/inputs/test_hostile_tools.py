@@ -112,15 +112,11 @@ def test_a_fleet_a_bench_and_other_machines(tmp_path, work, i):
     for words in (
         ("carry", case, second, "--json", "carry.json"),
         ("two-paths", case, "--winding", hot, "--machine", others[0], "--json", "paths.json"),
-        ("bases", case),
-        ("add", case, f"mass@{hot}"),
-        ("remove", case, f"mass@{hot}"),
+        *(("bases", case), ("add", case, f"mass@{hot}"), ("remove", case, f"mass@{hot}")),
         ("answer", case, others[2], f"{hot}: 0.3 K"),
-        ("viewer", case, "--out", "viewer.html"),
-        ("film", case, "--out", "film.gif"),
+        *(("viewer", case, "--out", "viewer.html"), ("film", case, "--out", "film.gif")),
         ("picture", case, "network", "--out", "network.png"),
-        ("picture", case, "losses", "--out", "losses.png"),
-        ("crosscheck", case),
+        *(("picture", case, "losses", "--out", "losses.png"), ("crosscheck", case)),
         ("watch", case, "--follow", units[0], "--out", "w", "--json", "w.json"),
         ("live", case, "--follow", units[0], "--out", "l", "--json", "l.json"),
         ("model", "machines", "--copy", MACHINE, "--out", f"m/{hot.replace('/', '')[:40]}"),
@@ -141,17 +137,9 @@ def test_a_law_and_a_heat_run(tmp_path, work, i):
         csv.writer(out).writerows([heads, *zip(P, T, F, N, T + rise, T + 1.1 * rise, T + 0.9 * rise)])
     follows = ("--follows", f"{flow}=l/min", "--follows", f"{speed}=rpm")
     words = (
-        "--heat",
-        heat,
-        "--coolant",
-        inlet,
+        *("--heat", heat, "--coolant", inlet),
         *follows,
-        "--temperatures",
-        "T_*",
-        "--out",
-        "law",
-        "--json",
-        "law.json",
+        *("--temperatures", "T_*", "--out", "law", "--json", "law.json"),
     )
     ran(work, "bench", "law", "steady.csv", *words)
     name = sensors[0]

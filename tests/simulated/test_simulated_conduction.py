@@ -1,5 +1,7 @@
 """The generator's own finite elements against closed forms."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from scipy.sparse import diags
@@ -62,6 +64,14 @@ def test_composite_wall_with_contact(wall):
     flux = 90 / (1 / 1000 + 0.02 / 50 + 1 / 500 + 0.03 / 0.25 + 1 / 20)
     face = wall.faces["b.cold"]
     assert 20.0 * (face.areas @ (T[face.nodes] - 10.0)) == pytest.approx(flux * 0.01, rel=1e-9)
+
+
+def test_conductivity_is_that_of_each_part_at_its_mean_temperature(wall):
+    """The first part conducts a thousandth more per kelvin; contacts stay."""
+    T = np.where(wall.part == 0, 120.0, 70.0)
+    moved = replace(wall, slope=np.array([1e-3, 0.0])).conduction(T) - wall.coupling
+    scale = np.where(wall.part == 0, 1.1, 1.0)
+    assert np.abs(moved - diags(scale) @ wall.stiffness).max() < 1e-12 * np.abs(wall.stiffness).max()
 
 
 def cylinder_error(n):

@@ -43,11 +43,7 @@ def test_generator_shares_no_physics(root):
 def test_generator_takes_only_the_machine_from_geom(root):
     """geom describes the machine and meshes it; it knows no films, losses or solvers to borrow."""
     allowed = {
-        "geom",
-        "geom.description",
-        "geom.description.machine",
-        "geom.meshing.mesh",
-        "geom.description.part",
+        *("geom", "geom.description", "geom.description.machine", "geom.meshing.mesh", "geom.description.part"),
         "geom.description.profile",
     }
     for path in (root / "simulated").rglob("*.py"):

@@ -67,12 +67,18 @@ def test_wrong_range_is_refused():
     with pytest.raises(InputError, match=r"range up to 40 ohm, resolution 0\.02"):
         OHMMETER.chosen(0.5, 40.0, "cold")
     assert OHMMETER.chosen(0.5, 4.0, "cold").resolution == 2e-3
+    assert [OHMMETER.chosen(ohm, None, "cold").high for ohm in (0.5, 5.0)] == [4.0, 40.0]
     with pytest.raises(InputError, match="outside the ranges"):
         OHMMETER.range_for(0.1)
     with pytest.raises(InputError, match="no range up to 7"):
         OHMMETER.chosen(0.5, 7.0, "cold")
     with pytest.raises(InputError, match="ends below it"):
         OHMMETER.chosen(5.0, 4.0, "hot")
+
+
+def test_scatter_of_single_readings_is_that_of_the_meters_steps():
+    """2 mohm, evenly spread, over R0 beta."""
+    assert Winding(0.5, 20.0, OHMMETER).reading_sd(0.6) == pytest.approx(2e-3 / np.sqrt(12.0) / (0.5 * COPPER.value))
 
 
 def test_iec_constant_at_another_cold_temperature():

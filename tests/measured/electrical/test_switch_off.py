@@ -80,11 +80,14 @@ def test_one_exponential_is_enough_where_there_is_one():
     assert found.value == pytest.approx(82.0, abs=3 * found.sd)
 
 
-def test_stated_uncertainty_covers():
+@pytest.mark.parametrize(
+    ("way", "end", "size", "tau"), [(exponentials, 70.0, 12.0, 150.0), (semilog_at, 20.0, 62.0, 900.0)]
+)
+def test_stated_uncertainty_covers(way, end, size, tau):
     """One exponential and 0.3 K of scatter: the error over the stated sd is of size 1; 150 draws know that to 15 %."""
     errors = []
     for seed in range(150):
-        found = exponentials(cooling(lambda t: 70.0 + 12.0 * np.exp(-t / 150.0), sd=0.3, seed=seed))
+        found = way(cooling(lambda t: end + size * np.exp(-t / tau), sd=0.3, seed=seed))
         errors.append((found.value - 82.0) / found.sd)
     assert np.sqrt(np.median(np.square(errors)) / 0.455) == pytest.approx(1.0, abs=0.25)
 

@@ -3,14 +3,12 @@
 from datetime import datetime, time, timedelta
 
 import numpy as np
-import openpyxl
 import pytest
+from logger_formats import workbook
 
 from geom.description.roles import Role
 from geom.errors import InputError
-from measured.headers.cells import split_unit
 from measured.headers.rows import layout
-from measured.headers.words import is_setpoint, quantities_of, roles_of
 from measured.importing.aligned import Recording, longest_part
 from measured.importing.case_files import read_runs
 from measured.importing.guess import guesses
@@ -27,57 +25,6 @@ def read(tmp_path, **columns):
     lines = [",".join(columns), *(",".join(f"{v:g}" for v in row) for row in zip(*columns.values(), strict=True))]
     (tmp_path / "a.csv").write_text("\n".join(lines) + "\n")
     return tmp_path / "a.csv"
-
-
-@pytest.mark.parametrize(
-    ("name", "role"),
-    [
-        ("stator_winding_temp", Role.WINDING),
-        ("EM_StatorTemp", Role.IRON),
-        ("T_w_in", Role.COOLANT),
-        ("tCool_EmOut", Role.COOLANT),
-        ("DB10.Temp_Carcaca", Role.HOUSING),
-        ("Temp_Gehause", Role.HOUSING),
-        ("铁芯温度", Role.IRON),
-        ("鉄心温度", Role.IRON),
-        ("T induit", Role.ROTOR),
-        ("T_VL", Role.COOLANT),
-        ("tRL_Pack", Role.COOLANT),
-    ],
-)
-def test_parts_by_what_is_named_beside_the_stator_and_without_accents(name, role):
-    assert roles_of(name)[0] == role
-
-
-@pytest.mark.parametrize(
-    ("header", "name", "unit"),
-    [
-        ("shaft_speed_rad_s", "shaft_speed", "rad/s"),
-        ("flow_l_per_min", "flow", "l/min"),
-        ("flow_litres_per_minute", "flow", "l/min"),
-        ("speed_metres_per_sec", "speed", "m/s"),
-        ("Flow (liters/minute)", "Flow", "l/min"),
-        ("Torque [N.mm]", "Torque", "mN*m"),
-        ("mdot_kg_h", "mdot", "kg/h"),
-        ("t_s", "t", "s"),
-        ("Speed [r/s]", "Speed", "Hz"),
-        ("I_U [Aef]", "I_U", "A"),
-    ],
-)
-def test_a_ratio_at_the_end_of_a_name_is_its_unit(header, name, unit):
-    assert split_unit(header) == (name, unit)
-
-
-@pytest.mark.parametrize(("name", "asked"), [("trqEM_Des", True), ("n_des [rpm]", True), ("T_des_bobines", False)])
-def test_what_is_desired_is_asked_for(name, asked):
-    assert is_setpoint(name) == asked
-
-
-@pytest.mark.parametrize(
-    ("name", "quantity"), [("Vdot_fluid", "water_flow"), ("P1_Prad_silnika", "current"), ("冷却水流量", "water_flow")]
-)
-def test_quantities_without_accents_and_units(name, quantity):
-    assert quantities_of(name) == [quantity]
 
 
 def test_a_row_of_units_stands_over_that_of_the_clock():
@@ -148,11 +95,6 @@ def test_a_file_of_several_runs_is_as_many_tests(tmp_path, sign):
     assert "3 tests, one from each start on" in runs[0][0].notes[-1]
 
 
-def test_a_clock_that_turns_over_starts_nothing_anew(tmp_path):
-    with pytest.raises(InputError, match="runs back"):
-        read_runs(read(tmp_path, **{"t [s]": T % 60, "T_winding [°C]": 20 + T}))
-
-
 def test_where_an_input_is_unknown_for_long_the_longest_part_is_the_test(tmp_path):
     ((source, clock),) = read_runs(read(tmp_path, **{"t [s]": 100 * T, "T_winding [°C]": 20 + T, "I [A]": T}))
     current = np.where((T > 30) & (T < 50), np.nan, T)
@@ -164,29 +106,21 @@ def test_where_an_input_is_unknown_for_long_the_longest_part_is_the_test(tmp_pat
 
 def test_times_of_day_over_remarks_and_a_unit_alone_under_its_quantity(tmp_path):
     """A list by hand, whose last rows are signatures."""
-    book = openpyxl.Workbook()
     head = [["Time", "Voltage", None, None, "Current", None, None, "Input", "Speed", "Amb", "Coil"]]
     head += [["(hrs)", "R-Y", "Y-B", "B-R", "R", "Y", "B", "(kW)", "(rpm)", "(°C)", "(°C)"]]
     rows = [[time(10 + k // 2, 30 * (k % 2)), 415, 414, 416, 5, 4, 6, 2.5, 1480, 30.0, 30.0 + k] for k in range(9)]
-    for row in (*head, *rows, [], ["Rise by resistance 80 K"], ["Tested by", None, "Witness"]):
-        book.active.append(row)
-    book.save(tmp_path / "a.xlsx")
-    [(source, clock)] = read_runs(tmp_path / "a.xlsx")
+    rows = [*head, *rows, [], ["Rise by resistance 80 K"], ["Tested by", None, "Witness"]]
+    [(source, clock)] = read_runs(workbook(tmp_path / "a.xlsx", Sheet=rows))
     assert clock.seconds == pytest.approx(1800.0 * np.arange(9))
     assert "Input (kW)" in source.cells
 
 
 def test_sheets_with_the_same_columns_are_tests_and_others_are_named(tmp_path):
-    book, names = openpyxl.Workbook(), ["t [s]", "T_winding [°C]"]
+    names = ["t [s]", "T_winding [°C]"]
+    sheets = {"Sheet": [["step", "W"], *([k, 2] for k in range(4))]}
     for sheet, first in (("Run 1", 20.0), ("Run 2", 30.0)):
-        page = book.create_sheet(sheet)
-        for row in (names, *([t, first + t] for t in T[: 30 + int(first)].tolist())):
-            page.append(row)
-    for page, head in ((book.active, ["step", "W"]), (book.create_sheet("Words"), ["About", "this"])):
-        for row in (head, *([[k, 2] for k in range(4)] if head[0] == "step" else [])):
-            page.append(row)
-    book.save(tmp_path / "a.xlsx")
-    runs = read_runs(tmp_path / "a.xlsx")
+        sheets[sheet] = [names, *([t, first + t] for t in T[: 30 + int(first)].tolist())]
+    runs = read_runs(workbook(tmp_path / "a.xlsx", **sheets, Words=[["About", "this"]]))
     assert [source.numbers(names[1])[0] for source, _ in runs] == [20.0, 30.0]
     assert [note.partition(": ")[2] for note in runs[0][0].notes] == [
         "a test from each of the worksheets Run 1, Run 2",
@@ -197,20 +131,13 @@ def test_sheets_with_the_same_columns_are_tests_and_others_are_named(tmp_path):
 @pytest.mark.parametrize("clock", [float, lambda s: datetime(2026, 3, 28, 23, 58) + timedelta(seconds=s)])
 def test_a_sheet_for_each_signal_is_one_test(tmp_path, clock):
     """Each at its own times, of its own length and begun at its own instant; a summary is not a signal."""
-    book, truth = openpyxl.Workbook(), {}
-    book.active.append(["Summary", "of all"])
-    for sheet, unit, begin, step, rows in (
-        ("Winding", "°C", 0, 5, 60),
-        ("Raum", "°C", 10, 30, 12),
-        ("Strom", "A", 4, 2, 140),
-    ):
-        page = book.create_sheet(sheet)
-        page.append(["Zeit [s]" if clock is float else "Zeit", f"Wert [{unit}]"])
+    signals = {"Winding": ("°C", 0, 5, 60), "Raum": ("°C", 10, 30, 12), "Strom": ("A", 4, 2, 140)}
+    truth, sheets = {}, {"Sheet": [["Summary", "of all"]]}
+    for sheet, (unit, begin, step, rows) in signals.items():
         truth[sheet] = {begin + step * k: 20.0 + k for k in range(rows)}
-        for second, value in truth[sheet].items():
-            page.append([clock(second), value])
-    book.save(tmp_path / "a.xlsx")
-    [(source, at)] = read_runs(tmp_path / "a.xlsx")
+        head = ["Zeit [s]" if clock is float else "Zeit", f"Wert [{unit}]"]
+        sheets[sheet] = [head, *([clock(second), value] for second, value in truth[sheet].items())]
+    [(source, at)] = read_runs(workbook(tmp_path / "a.xlsx", **sheets))
     for sheet, readings in truth.items():
         (column,) = (c for c in source.columns if c.startswith(sheet))
         read = source.numbers(column)
@@ -220,14 +147,9 @@ def test_a_sheet_for_each_signal_is_one_test(tmp_path, clock):
 
 
 def test_sheets_of_signals_that_share_no_time_are_refused(tmp_path):
-    book = openpyxl.Workbook()
-    for sheet, begin in (("Winding", 0), ("Room", 900)):
-        page = book.create_sheet(sheet)
-        for row in (["t [s]", "value"], *([begin + t, 20 + t] for t in T.tolist())):
-            page.append(row)
-    book.save(tmp_path / "a.xlsx")
+    first, last = ([["t [s]", "value"], *([begin + t, 20 + t] for t in T.tolist())] for begin in (0, 900))
     with pytest.raises(InputError, match="never run at one time"):
-        read_runs(tmp_path / "a.xlsx")
+        read_runs(workbook(tmp_path / "a.xlsx", Winding=first, Room=last))
 
 
 def test_the_clocks_unit_behind_the_label_of_the_row_of_units():
@@ -248,17 +170,3 @@ def test_rises_beside_the_room_alone_are_temperatures(tmp_path, room, added):
     if added:
         assert source.numbers(f"Winding rise ΔT [K] + {room}") == pytest.approx(20 + 1.1 * T)
         assert f"'{room}' is added" in source.notes[-1]
-
-
-@pytest.mark.parametrize(
-    ("name", "roles"),
-    [
-        ("T_DE", [Role.BEARING]),
-        ("Temp. NDE", [Role.BEARING]),
-        ("T_AS", [Role.BEARING]),
-        ("frame DE", [Role.HOUSING]),
-        ("temp de culasse", []),
-    ],
-)
-def test_an_end_of_the_shaft_is_its_bearing(name, roles):
-    assert roles_of(name) == roles

@@ -1,6 +1,7 @@
 """Inputs that are switched, and tests that are part of a recording."""
 
 import numpy as np
+import pandas as pd
 import pytest
 from small_case import small_case
 
@@ -53,6 +54,18 @@ def test_a_test_is_part_of_a_recording(tmp_path):
     assert part.channels[0].y[1:-1] == pytest.approx(whole.channels[0].y[inside])
     assert part.inputs["fan_on"][part.time < 480].max() == 0.0
     assert part.inputs["fan_on"][part.time > 520].min() == 1.0
+
+
+def test_a_current_between_instants_counts_by_its_heat(tmp_path):
+    """100 A and none in turns: an instant between two rows has the root of their mean square."""
+    file = small_case(tmp_path) / "tests" / "stand.csv"
+    table = pd.read_csv(file)
+    table["current"] = 100.0 * (table.index % 2)
+    table.to_csv(file, index=False)
+    current = load_case(file.parents[1]).case.tests[0].inputs["current_A"][1:-1]
+    between = current[(current > 0.0) & (current < 100.0)]
+    assert between.size > 9
+    assert between == pytest.approx(100.0 / np.sqrt(2.0))
 
 
 @pytest.mark.parametrize(

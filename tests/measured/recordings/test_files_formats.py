@@ -161,14 +161,10 @@ def test_columns_are_mapped_and_units_converted(tmp_path):
 @pytest.mark.parametrize(
     ("of", "unit", "value", "inside"),
     [
-        ("temperature", "kelvin", 300.0, 26.85),
-        ("torque", "lbf*ft", 1.0, 1.3558179),
-        ("speed", "rad/min", 2 * np.pi, 1.0),
-        ("power", "hp", 1.0, 745.69987),
-        ("air_flow", "ft**3/min", 1.0, 1.69901),
-        ("time", "day", 1.0, 86400.0),
-        ("resistance", "milliohm", 5.0, 5e-3),
-        ("water_flow", "gallon/min", 1.0, 3.785412),
+        *(("temperature", "kelvin", 300.0, 26.85), ("torque", "lbf*ft", 1.0, 1.3558179)),
+        *(("speed", "rad/min", 2 * np.pi, 1.0), ("power", "hp", 1.0, 745.69987)),
+        *(("air_flow", "ft**3/min", 1.0, 1.69901), ("time", "day", 1.0, 86400.0)),
+        *(("resistance", "milliohm", 5.0, 5e-3), ("water_flow", "gallon/min", 1.0, 3.785412)),
     ],
 )
 def test_units_by_pint(of, unit, value, inside):

@@ -75,10 +75,8 @@ def test_unfinished_record_is_exit_1(record):
     ("old", "new", "words"),
     [
         ("machine_degC = 21.0", "machine_degC = 25.0", "off the room"),
-        ("range_ohm = 4.0", "range_ohm = 40.0", "range up to 40 ohm"),
-        ("rated_kW", "rated_W", "rated_kW"),
-        ('column = "R_ohm"', 'column = "R"', "known: time_s, R_ohm"),
-        ("room_degC", "room_C", "room_degC"),
+        *(("range_ohm = 4.0", "range_ohm = 40.0", "range up to 40 ohm"), ("rated_kW", "rated_W", "rated_kW")),
+        *(('column = "R_ohm"', 'column = "R"', "known: time_s, R_ohm"), ("room_degC", "room_C", "room_degC")),
     ],
 )
 def test_wrong_records_are_refused(record, old, new, words):

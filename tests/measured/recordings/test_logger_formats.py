@@ -12,21 +12,11 @@ from thermoscope.commands.test.new import first_model
 
 # Names that the reader makes itself: of these formats columns are told by their order.
 RENAMED = {
-    "no header",
-    "Arduino",
-    "a serial monitor",
-    "a second name over each",
-    "groups over names",
-    "an object on every line",
-    "objects in an object",
-    "names and units between bars",
-    "remarks beside a clock",
-    "names for statistics programs",
-    "a comment sign before the names",
-    "what channels are in a row of remarks",
-    "a japanese logger and its table of channels",
-    "units in a table of channels",
-    "milliseconds in brackets",
+    *("no header", "Arduino", "a serial monitor", "a second name over each", "groups over names"),
+    *("an object on every line", "objects in an object", "names and units between bars"),
+    *("remarks beside a clock", "names for statistics programs", "a comment sign before the names"),
+    *("what channels are in a row of remarks", "a japanese logger and its table of channels"),
+    *("units in a table of channels", "milliseconds in brackets"),
 }
 
 

@@ -15,7 +15,6 @@ from two_bodies import bench
 from geom.errors import InputError, MissingDependency
 from lumped.declarations.network import load_network
 from measured.doubt import USUAL
-from measured.headers.cells import number, split_unit
 from measured.importing.clock import clock_of
 from measured.importing.guess import guesses
 from measured.importing.source import read_source
@@ -187,42 +186,6 @@ def lines(times, rest="20.0"):
     return "\n".join(["Time,T_winding"] + [f"{t},{rest}" for t in times])
 
 
-@pytest.mark.parametrize(
-    ("times", "seconds"),
-    [
-        (["0:58.5", "0:59.5", "1:00.5"], [0, 1, 2]),
-        (["23:59:59", "0:00:00", "0:00:01"], [0, 1, 2]),
-        (["11:59:59 PM", "12:00:00 AM", "12:00:01 AM"], [0, 1, 2]),
-        (["2024-03-09T10:00:00Z", "2024-03-09T12:00:01+02:00", "2024-03-09T10:00:02Z"], [0, 1, 2]),
-        (["31.12.2024 23:59:59", "01.01.2025 00:00:00", "01.01.2025 00:00:01"], [0, 1, 2]),
-        (["1710000000", "1710000001", "1710000002"], [0, 1, 2]),
-        (["1710000000000", "1710000001000", "1710000002000"], [0, 1, 2]),
-        (["45000.0", "45000.25", "45000.5"], [0, 21600, 43200]),
-    ],
-)
-def test_clocks(tmp_path, times, seconds):
-    found = clock_of(read_source(text(tmp_path, lines(times))))
-    assert found.seconds == pytest.approx(seconds, abs=1e-3)
-    assert found.columns == ("Time",)
-
-
-@pytest.mark.parametrize(
-    ("header", "name", "unit"),
-    [
-        ("T1 [°C]", "T1", "degC"),
-        ("Speed (1/min)", "Speed", "1/min"),
-        ("T_yoke / °C", "T_yoke", "degC"),
-        ("t in s", "t", "s"),
-        ("speed_rpm", "speed", "rpm"),
-        ("P (kW)", "P", "kW"),
-        ("coil A1", "coil A1", ""),
-        ("Flow rate, l/min", "Flow rate", "l/min"),
-    ],
-)
-def test_units_in_headers(header, name, unit):
-    assert split_unit(header) == (name, unit)
-
-
 def test_the_columns_of_a_published_test_bench(root):
     """HUST: no units, no clock, 22 columns. Inputs and places agree with the case that was written by hand."""
     source = read_source(root / "cases/hust-ipmsm/tests/id_1.csv.gz")
@@ -366,24 +329,6 @@ def test_what_many_tests_lack_is_said_once(tmp_path, capsys):
     assert "4 tests alike" in said
 
 
-@pytest.mark.parametrize(
-    ("cell", "value"),
-    [
-        ("1.234,5", 1234.5),
-        ("1,234.5", 1234.5),
-        ("1 234,5", 1234.5),
-        ("1'234'567", 1234567.0),
-        ("1.234.567", 1234567.0),
-        ("-12.345,25", -12345.25),
-        ("1.5", 1.5),
-        ("1,5", 1.5),
-        ("1,500", 1.5),
-    ],
-)
-def test_digits_in_threes(cell, value):
-    assert number(cell) == value
-
-
 def test_a_point_among_decimal_commas_stands_between_thousands(tmp_path):
     """1.500 rpm is fifteen hundred where temperatures have decimal commas, and 1.5 where they have points."""
     rows = "\n".join(f"{i};1.{500 + i};{20 + i / 10:.1f}" for i in range(50))
@@ -433,13 +378,6 @@ def test_words_after_the_last_row_and_rows_without_a_time_end_no_clock(tmp_path,
     case = made(tmp_path, text(tmp_path, record(100) + "End of data\nOperator: somebody\n"))
     assert case.tests[0].time[-1] == pytest.approx(99.0, abs=1.0)
     assert np.isfinite(compare(case).rmse_K)
-
-
-@pytest.mark.parametrize(("header", "unit_s"), [("Minutes", 60.0), ("Stunden", 3600.0), ("ms", 1e-3), ("s", 1.0)])
-def test_a_header_that_is_a_unit_of_time_is_the_clock(tmp_path, header, unit_s):
-    found = clock_of(read_source(text(tmp_path, record(100, f"{header},T_winding,I [A]"))))
-    assert found.columns == (header,)
-    assert found.seconds[1] == pytest.approx(unit_s)
 
 
 def test_what_may_be_a_clock_and_units_that_are_none_are_said(tmp_path, capsys):

@@ -8,24 +8,11 @@ from logger_formats import signals
 from nptdms import ChannelObject, TdmsWriter
 from scipy.io import savemat
 
-from geom.description.roles import Role
 from geom.errors import InputError
 from measured.headers.cells import split_unit
-from measured.headers.words import quantities_of, roles_of, tokens
 from measured.importing.aligned import Recording
 from measured.importing.case_files import read_runs
-from measured.importing.guess import (
-    AS_TORQUE,
-    AS_WINDING,
-    BY_READINGS,
-    DEAD,
-    INDOORS,
-    NUMBERED_MACHINE,
-    OF_INSTRUMENT,
-    OF_TESTED,
-    guesses,
-    in_memory,
-)
+from measured.importing.guess import BY_READINGS, guesses, in_memory
 from thermoscope.commands.test.new import first_model
 
 S = signals(5.0)
@@ -69,58 +56,6 @@ def test_a_break_with_remarks_early_in_a_table_costs_no_rows(tmp_path):
     assert read(tmp_path, "\n".join(text))[1].numbers("I [A]").size >= T.size
 
 
-@pytest.mark.parametrize(
-    ("names", "doubt"), [(("hotspot", "heatsink"), OF_TESTED), (("temps.igbt", "temps.heatsink"), OF_INSTRUMENT)]
-)
-def test_a_device_is_what_is_tested_where_nothing_else_is_warm(tmp_path, names, doubt):
-    found, _ = read(tmp_path, ",".join(("t [s]", *names, "ambient", "I [A]")) + "\n" + body(T, W, H, A, J))
-    assert [found[name].quantity for name in (*names, "ambient")] == 3 * ["temperature"]
-    assert all(found[name].place not in ("", "ambient") for name in names)
-    assert doubt in {found[name].doubt for name in names}
-
-
-def test_names_of_a_simulation(tmp_path):
-    """In kelvin; a rate is no temperature, a heat flow no water, and w beside a torque is in rad/s."""
-    names = "time,winding.T,fixedTemperature.T,der(winding.T),loss.Q_flow,motor.w,motor.tau,motor.i_rms"
-    rate = np.gradient(W, T)
-    still = np.full(T.size, 295.15)
-    found, _ = read(tmp_path, f"{names}\n{body(T, W + 273.15, still, rate, 3 * W, N / 10, M, J + 20)}")
-    assert goes(found) == {
-        "winding.T": "winding",
-        "fixedTemperature.T": "ambient",
-        "loss.Q_flow": "power_W",
-        "motor.w": "speed_rpm",
-        "motor.tau": "torque_Nm",
-        "motor.i_rms": "current_A",
-    }
-    assert found["motor.w"].unit == "rad/s"
-
-
-def test_a_junction_as_a_circuit_simulator_writes_it(tmp_path):
-    found, _ = read(tmp_path, f"time,V(tj),V(theatsink),V(tamb),I(P)\n{body(T, W, H, A, J)}")
-    assert {found[c].quantity for c in ("V(tj)", "V(theatsink)", "V(tamb)")} == {"temperature"}
-
-
-def test_a_load_among_temperatures_is_a_torque_where_it_starts_elsewhere(tmp_path):
-    found, _ = read(tmp_path, f"t,i_rms,w_mech,T_load,T_winding,T_housing,T_amb\n{body(T, J, N / 10, 4 + M, W, H, A)}")
-    assert (found["T_load"].feeds, found["T_load"].doubt) == ("torque_Nm", AS_TORQUE)
-    found, _ = read(tmp_path, f"t,i_rms,w_mech,T_load,T_winding,T_housing,T_amb\n{body(T, J, N / 10, H - 1, W, H, A)}")
-    assert found["T_load"].place == "load"
-
-
-def test_an_outer_wall_is_no_room(tmp_path):
-    found, _ = read(tmp_path, f"t [s],Camera [C],Parete esterna [C],Aria ambiente [C],I [A]\n{body(T, W, H, A, J)}")
-    assert goes(found)["Parete esterna [C]"] == "housing"
-
-
-@pytest.mark.parametrize(("part", "room"), [("buffer_tank", "outdoor"), ("winding", "living_room")])
-def test_a_room_is_a_part_of_a_house_and_the_surroundings_of_a_machine(tmp_path, part, room):
-    names = [f"{name}_temperature" for name in (part, "living_room", "outdoor")]
-    found, _ = read(tmp_path, ",".join(("t [s]", *names, "power [W]")) + "\n" + body(T, W, A, A - 15, 9 * J))
-    assert [name for name, place in goes(found).items() if place == "ambient"] == [f"{room}_temperature"]
-    assert (found["living_room_temperature"].doubt == INDOORS) == (room == "outdoor")
-
-
 @pytest.mark.parametrize(("units", "other"), [("s,degC,degC,degC,A\n", 0), ("", 0), ("", 2)])
 def test_an_index_among_others_is_no_unit(tmp_path, units, other):
     found, _ = read(tmp_path, f"t,theta_w[{other}],theta_w[1],theta_amb,i_s\n{units}{body(T, W, W + 1, A, J)}")
@@ -144,39 +79,6 @@ def test_rows_of_statistics_under_a_table_are_not_counted(tmp_path, capsys):
     assert new_case([tmp_path / "a.csv"], Wishes(out=tmp_path / "case", yes=True), str(document)) == 0
     (test,) = json.loads(document.read_text())["tests"]
     assert [file["rows"] for file in test["files"]] == [T.size]
-
-
-@pytest.mark.parametrize(
-    ("names", "places"),
-    [
-        (("Aceite superior", "Aceite inferior"), ["aceite-superior", "aceite-inferior"]),
-        (("Tank oil", "Cooler outlet oil"), ["tank-oil", "cooler-outlet-oil"]),
-        (("T_oil", "Oil inlet"), ["", "coolant"]),
-        (("T_oil", "T_water in"), ["", "coolant"]),
-    ],
-)
-def test_oil_that_the_machine_warms_is_a_part_unless_something_flows_in(tmp_path, names, places):
-    units = [f"{name} [degC]" for name in names]
-    found, _ = read(
-        tmp_path,
-        ",".join(("t [s]", "T_core [degC]", *units, "Room [degC]", "I [A]")) + "\n" + body(T, W, H, H - 1.0, A, J),
-    )
-    assert [found[name].place for name in units] == places
-
-
-def test_oil_that_a_pump_brings_stays_the_coolant(tmp_path):
-    names = "t [s],T_winding [degC],T_oil [degC],Room [degC],I [A],Oil flow [l/min]\n"
-    found, _ = read(tmp_path, names + body(T, W, H, A, J, 4.0 + 0.1 * np.sin(T)))
-    assert found["T_oil [degC]"].place == "coolant"
-
-
-@pytest.mark.parametrize("word", ["Puissance chauffe", "Heizung", "Potenza riscaldamento", "Heater power"])
-def test_heaters_of_several_zones_are_an_input_each(tmp_path, word):
-    names = f"t [s],Zone 1 [degC],Zone 2 [degC],T_amb [degC],{word} 1 [W],{word} 2 [W]\n"
-    found, _ = read(tmp_path, names + body(T, W, H, A, 10.0 * J, 5.0 * J))
-    powers = [g.feeds for g in found.values() if g.quantity == "power"]
-    assert len({*powers}) == 2
-    assert all(name.endswith("_W") for name in powers)
 
 
 def test_a_sign_behind_the_last_name_and_readings_under_it(tmp_path):
@@ -230,37 +132,10 @@ def test_numbered_columns_beside_one_that_reads_like_a_temperature(tmp_path):
     assert {name: g.quantity for name, g in found.items()} == dict.fromkeys(found, "temperature")
 
 
-def test_a_device_beside_a_dead_sensor_is_what_is_tested(tmp_path):
-    found, _ = read(tmp_path, "t [s],temp_mos_1,temp_motor,I [A]\n" + body(T, W, 39.2 + 0 * T, J))
-    assert (found["temp_mos_1"].place, found["temp_mos_1"].doubt) == ("mos-1", OF_INSTRUMENT)
-    assert (found["temp_motor"].place, found["temp_motor"].doubt) == ("", DEAD)
-
-
 def test_a_power_in_a_torques_unit_is_doubted(tmp_path):
     found, _ = read(tmp_path, "t [s],T_coil [degC],Torque [N.mm],Power [N.mm]\n" + body(T, W, J, 9 * J))
     assert found["Torque [N.mm]"].doubt == ""
     assert "a power" in found["Power [N.mm]"].doubt
-
-
-def test_milliseconds_of_a_day_are_no_seconds(tmp_path):
-    (tmp_path / "a.csv").write_text(
-        "ms_today,T_coil [degC]\n" + "".join(f"{76231191 + 91 * k},{v:.2f}\n" for k, v in enumerate(W))
-    )
-    [(_, clock)] = read_runs(tmp_path / "a.csv")
-    assert clock.end_s == pytest.approx(0.091 * (W.size - 1))
-
-
-def test_seconds_since_1970_without_a_name_are_a_clock_where_they_run_back(tmp_path):
-    times = np.tile(np.arange(T.size // 3), 3) * 3600 + 1692576000
-    rows = [f"{t},tank,Tank {k},{v:.2f}" for k, (t, v) in enumerate(zip(times.tolist(), W, strict=False))]
-    (tmp_path / "a.csv").write_text("\n".join(rows) + "\n")
-    with pytest.raises(InputError, match="the clock runs back"):
-        read_runs(tmp_path / "a.csv")
-
-
-def test_a_refusal_names_columns_that_nobody_understood(tmp_path):
-    with pytest.raises(InputError, match=r"'QX', 'QY': neither name nor unit.*--place QX=PLACE"):
-        read(tmp_path, "t [s],QX,QY\n" + body(T, 1000 + W, 900 * J))
 
 
 def test_means_and_limits_over_the_readings_are_left_out_and_said(tmp_path):
@@ -284,14 +159,6 @@ def test_remarks_under_hours_and_minutes_do_not_make_them_minutes_and_seconds(tm
     assert clock.end_s == pytest.approx(29 * 600.0)
 
 
-@pytest.mark.parametrize("stamp", [" 12/31  {:02d}:00:00", "31.12. {:02d}:00"])
-def test_dates_without_a_year_are_a_clock_without_a_start(tmp_path, stamp):
-    rows = [f"{stamp.format(h)},{v:.1f},{i:.1f}" for h, v, i in zip(range(1, 25), W, J)]
-    (tmp_path / "a.csv").write_text("\n".join(["Date/Time,T_coil [degC],I [A]", *rows]) + "\n")
-    [(_, clock)] = read_runs(tmp_path / "a.csv")
-    assert (clock.start, clock.end_s, clock.doubt) == (None, pytest.approx(23 * 3600.0), "")
-
-
 def test_quantities_and_units_under_the_names_of_parts(tmp_path):
     head = "Spot,Winding,Bearing,Housing,Ambient,Motor\nNo,1,2,3,4,5\n"
     head += "Time (s),Temp. (°C),Temp. (°C),Temp. (°C),Temp. (°C),Power (W)\n"
@@ -306,41 +173,6 @@ def test_lines_over_a_table_say_what_its_channels_are(tmp_path):
     found, _ = read(tmp_path, "\n".join(lines) + "\n" + body(T, W, A, 9 * J))
     assert [g.quantity for g in found.values()] == ["temperature", "temperature", "power"]
     assert found["A2 Lab air [°C]"].place == "ambient"
-
-
-def test_compounds_with_a_joint_and_german_letters_spelled_out_are_words():
-    assert roles_of("Wicklungstemperatur")[0] == Role.WINDING
-    assert roles_of("Umgebungstemp")[0] == Role.AMBIENT
-    assert tokens("T_Kuehlkoerper") == tokens("T_Kühlkörper") == ("t", "heatsink")
-    assert quantities_of("p_loss") == ["power"]
-    assert not quantities_of("p_in_bar")
-
-
-def test_a_small_letter_is_the_unit_of_the_quantity_before_it():
-    assert split_unit("loss_w") == ("loss", "W")
-    assert split_unit("temp_c") == ("temp", "degC")
-    assert split_unit("T_f") == ("T_f", "")
-    assert split_unit("T_coil_w") == ("T_coil_w", "")
-
-
-def test_every_power_is_an_input_of_its_own(tmp_path):
-    found, _ = read(tmp_path, "t [s],Tcoil [C],Tair [C],Pa [W],Pb [W]\n" + body(T, W, A, 9 * J, 5 * N / 1500))
-    assert [g.feeds for g in found.values() if g.quantity == "power"] == ["power_W", "pb_W"]
-
-
-def test_where_nothing_turns_a_device_is_what_is_tested(tmp_path):
-    found, _ = read(tmp_path, "t [s],T_module [C],T_heatsink [C],T_air [C],P [W]\n" + body(T, W, H, A, 9 * J))
-    assert found["T_heatsink [C]"].place == "heatsink"
-    beside = "t [s],T_module [C],T_heatsink [C],T_air [C],P [W],Speed [rpm]\n" + body(T, W, H, A, 9 * J, N)
-    assert not read(tmp_path, beside)[0]["T_heatsink [C]"].used
-
-
-def test_a_battery_has_no_winding(tmp_path):
-    head = "t [s],Cell 1 [C],Cell 2 [C],Air [C],I [A]"
-    still, _ = read(tmp_path, f"{head}\n" + body(T, W, H, A, J))
-    turning, _ = read(tmp_path, f"{head},Speed [rpm]\n" + body(T, W, H, A, J, N))
-    assert not any(AS_WINDING in g.doubt for g in still.values())
-    assert any(AS_WINDING in g.doubt for g in turning.values())
 
 
 def test_a_logged_line_with_its_instant_in_brackets(tmp_path):
@@ -376,64 +208,6 @@ def test_a_unit_may_stand_before_a_name_or_be_of_the_old_world(tmp_path):
     found, source = read(tmp_path, "t [s],T_coil [C],Heater (BTU/h)\n" + body(T, W, 3412.14 * J / 9))
     assert found["Heater (BTU/h)"].feeds == "power_W"
     assert in_memory(source, found["Heater (BTU/h)"]).max() == pytest.approx(1000.0, rel=1e-3)
-
-
-def test_two_machines_in_one_table_are_doubted(tmp_path):
-    found, _ = read(tmp_path, "t [s],Motor 1 coil [C],Motor 2 coil [C],Air [C],I [A]\n" + body(T, W, H, A, J))
-    assert [NUMBERED_MACHINE in g.doubt for g in found.values()] == [True, True, False, False]
-
-
-def test_the_power_of_a_machine_is_the_sum_of_its_phases(tmp_path):
-    """Copper and iron are no phases, and their sum is no reading more."""
-    P = 400.0 + 90.0 * J
-    phases = body(T, W, A, 0.33 * P, 0.34 * P, 0.33 * P, P)
-    found, _ = read(tmp_path, "t [s],T coil [C],T air [C],P1 [W],P2 [W],P3 [W],Power in [W]\n" + phases)
-    assert [c for c, g in found.items() if g.feeds] == ["Power in [W]"]
-    found, _ = read(
-        tmp_path, "t [s],T coil [C],T air [C],Pcu loss [W],Pfe loss [W],Total loss [W]\n" + body(T, W, A, J, N, J + N)
-    )
-    assert {"Pcu loss [W]", "Pfe loss [W]"} <= goes(found).keys()
-
-
-@pytest.mark.parametrize(("sign", "used"), [(1.0, True), (-1.0, True), (np.sign(T - 100.0), False)])
-def test_a_power_of_both_signs_passes_through(tmp_path, sign, used):
-    """One that is negative throughout is a clamp the wrong way round, of which compare tells."""
-    found, _ = read(
-        tmp_path, "t [s],T coil [C],T air [C],Power [W],Speed [rpm]\n" + body(T, W, A, sign * (9 * J + 3), N)
-    )
-    assert found["Power [W]"].used == used
-
-
-@pytest.mark.parametrize("room", ["Room [C]", ""])
-def test_air_that_enters_and_leaves_cools_beside_a_room(tmp_path, room):
-    head = "t [s],T coil [C],1 <Air in> [C],2 <Air out> [C],I [A]" + f",{room}" * bool(room)
-    found, _ = read(tmp_path, head + "\n" + body(T, W, A, A + 0.2 * (H - A), J, *[A] * bool(room)))
-    assert found["1 <Air in> [C]"].place == ("coolant" if room else "ambient")
-    assert not room or found[room].place == "ambient"
-
-
-def test_the_least_and_the_largest_beside_a_mean_are_no_readings_of_their_own(tmp_path):
-    """The mean of both would be a function of them."""
-    names = [f"{name}/{kind} [C]" for name in ("T coil", "T Cell") for kind in ("AVE", "MIN", "MAX")]
-    columns = [v + d for v in (W, A) for d in (0.0, -0.1, 0.1)]
-    found, _ = read(tmp_path, ",".join(["t [s]", *names, "I [A]"]) + "\n" + body(T, *columns, J))
-    assert goes(found) == {names[0]: "coil-ave", names[3]: "ambient", "I [A]": "current_A"}
-
-
-@pytest.mark.parametrize(
-    ("content", "cause"),
-    [
-        (
-            "".join(f"{k + 1:5d} {20 * k}.013 DT 0181 Rx - 8 1A 0{k} FF 00 2C 00 7B 00\n" for k in range(9)),
-            "frames of a bus",
-        ),
-        ("PK\3\4\0\0", "is packed, as a spreadsheet .ods"),
-    ],
-)
-def test_what_holds_no_table_is_refused_by_what_it_is(tmp_path, content, cause):
-    (tmp_path / "a.trc").write_text(content)
-    with pytest.raises(InputError, match=cause):
-        read_runs(tmp_path / "a.trc")
 
 
 def test_whole_numbers_between_blanks_are_no_frames(tmp_path):

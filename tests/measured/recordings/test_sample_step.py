@@ -1,12 +1,13 @@
-"""The sample step is the tool's: inputs that switch keep their instants, and results do not follow it."""
+"""The sample step is the tool's: inputs that switch keep their instants. Results follow neither it nor any unit."""
 
 from dataclasses import replace
 
 import numpy as np
 import pytest
 from scipy.integrate import quad
-from small_case import small_case
+from small_case import HEADER, measured, small_case
 
+import thermoscope as ts
 from lumped.integration.signals import Signals
 from lumped.integration.simulate import Record, simulate
 from lumped.model.build import bare_network, node_link, node_source
@@ -109,11 +110,12 @@ def test_a_sensor_that_follows_fast_asks_for_short_steps():
     """The winding's own time constant is 58 s, the housing's half an hour: one sensor at either."""
     net, (time, inputs) = two_bodies(), switching()
 
-    def chosen(name, wished=None):
-        seen = [(name, net.place(name).mean, 0.05, 0.0)]
+    def chosen(name, wished=None, lag_s=0.0):
+        seen = [(name, net.place(name).mean, 0.05, lag_s)]
         return sample_step(net, time, inputs, {"ambient": 20.0}, seen, 60.0, wished)
 
     assert chosen("winding").step_s < chosen("housing").step_s == 10.0  # no wider than the instants of a fit
+    assert chosen("winding").step_s < chosen("winding", lag_s=600.0).step_s  # one that follows slowly
     assert chosen("winding").node == "winding"
     assert chosen("winding").time_constant_s == pytest.approx(58.0, rel=0.1)
     assert chosen("housing", 5.0).step_s == 5.0
@@ -127,6 +129,8 @@ def test_modes_and_what_a_mean_leaves_of_them():
     modes = Modes.of(np.array([[2.0]]), np.array([4000.0]))
     assert modes.rate == pytest.approx([5e-4])
     assert (modes.shape @ modes.weight).real == pytest.approx(np.array([[0.5]]))
+    G = np.array([[2.0, -1.0], [-1.0, 3.0]])  # the first has no capacity: what heat warms both by is the same
+    assert (m := Modes.of(G, np.array([0.0, 4000.0]))).shape @ m.weight == pytest.approx(np.linalg.inv(G))
     for x in (0.3, 3.0, 30.0):
         mean = quad(lambda t, x=x: -np.expm1(-x * t), 0.0, 0.5)[0]
         assert interpolation_error(np.array([x]))[0] == pytest.approx(abs(mean + np.expm1(-x) / 12.0), abs=1e-9)
@@ -149,3 +153,43 @@ def test_what_the_laws_read_has_the_order_of_the_test():
     inputs = {f"heat_{name}": grid for name in "qwertyuiop"}
     recorded = Recorded(fine, {name: fine for name in sorted(inputs)}, grid, inputs)
     assert list(Test("many", "calibrate", grid, inputs, {}, (), recorded=recorded).signals)[:10] == list(inputs)
+
+
+# column -> (unit of the small case, another one, from the first to the second)
+OTHERS = {
+    "time_s": ("s", "min", lambda v: v / 60.0),
+    "current": ("A", "mA", lambda v: 1e3 * v),
+    "wind": ("km/h", "m/s", lambda v: v / 3.6),
+    "air": ("degC", "degF", lambda v: 32.0 + 1.8 * v),
+    "T_winding": ("degC", "K", lambda v: v + 273.15),
+    "T_yoke": ("K", "degC", lambda v: v - 273.15),
+    "T_flange": ("degC", "degF", lambda v: 32.0 + 1.8 * v),
+}
+
+
+def with_units(folder, other):
+    """The small case with twelve digits, as it is or in the other units."""
+    case = small_case(folder)
+    for seed, name in enumerate(["stand", "road", "town"]):
+        rows = measured(seed, name != "stand", 6.0)
+        sheet = (case / "tests" / f"{name}.toml").read_text()
+        if other:
+            rows = np.column_stack([change(y) for y, (_, _, change) in zip(rows.T, OTHERS.values(), strict=True)])
+            head, *blocks = sheet.split("[columns.")
+            units = {f"{column}]": (a, b) for column, (a, b, _) in OTHERS.items()}
+            blocks = [b.replace(*(f'unit = "{u}"' for u in units[b.split("\n")[0]])) for b in blocks]
+            sheet = "[columns.".join([head.replace('time = "time_s"', 'time = "time_s"\ntime_unit = "min"'), *blocks])
+        lines = [HEADER, *(",".join(f"{v:.12g}" for v in row) for row in rows)]
+        (case / "tests" / f"{name}.csv").write_text("\n".join(lines) + "\n")
+        (case / "tests" / f"{name}.toml").write_text(sheet)
+    return ts.open(case)
+
+
+@pytest.mark.nightly
+def test_other_units_change_nothing(tmp_path):
+    """Twelve digits are 1e-10 of a temperature; steps of a fit end within 1e-6 of each other."""
+    here, there = (with_units(tmp_path / word, word == "other") for word in ("same", "other"))
+    assert there.compare().rmse_K == pytest.approx(here.compare().rmse_K, rel=1e-6)
+    one, two = here.diagnose().document()["odds"], there.diagnose().document()["odds"]
+    assert [o["hypothesis"] for o in two] == [o["hypothesis"] for o in one]
+    assert [o["probability"] for o in two] == pytest.approx([o["probability"] for o in one], abs=1e-3)
