@@ -66,9 +66,10 @@ def learn_network(case: Case, first: FirstNetwork) -> FirstNetwork:
     while (fewer := _without_odd(table, folds, left_out)) is not None:
         needed, table, left_out = fewer
     fits = [table.fit(every, needed), *(table.fit([j for j in every if j != i], needed) for i in every)]
-    if not min(table.mean_heat(theta, heat) for theta, _ in fits) > 0.0:
+    warm = [(theta, C, watts) for theta, C in fits if (watts := table.mean_heat(theta, heat)) > 0.0]
+    if not table.mean_heat(fits[0][0], heat) > 0.0 or len(warm) < 2:
         return first  # nothing heats it: there is no size to give to anything
-    (theta, C), *parts = [(s * theta, s * C) for theta, C in fits for s in [first.watts / table.mean_heat(theta, heat)]]
+    (theta, C), *parts = [(first.watts / watts * theta, first.watts / watts * C) for theta, C, watts in warm]
     scale = dict(zip(columns.inputs, map(float, columns.scale), strict=True))
     follows = [tuple((f.input, scale[f.input], f.exponent) for f in of) for _, of in table.candidates]
     spreads = [_spread(values) for values in zip(*(part for part, _ in parts), strict=True)]
@@ -79,8 +80,8 @@ def learn_network(case: Case, first: FirstNetwork) -> FirstNetwork:
     length = max(r.time[-1] - r.time[0] for fold in folds for r in fold)
     alone = [node for node in capacities if not _reaches(node, terms, first.boundaries)]
     terms += [FirstTerm((node, first.boundaries[0]), capacities[node][0] / (SLOW * length)) for node in alone]
-    odd = {r.name for fold, counts in zip(folds, table.credit, strict=True) for r in fold if counts < ODD_COUNTS}
-    learnt = [t.name for t in case.usable if t.name not in odd]
+    taught = {r.name for fold, counts in zip(folds, table.credit, strict=True) for r in fold if counts >= ODD_COUNTS}
+    learnt = [t.name for t in case.usable if t.name in taught]
     return replace(first, capacities=capacities, terms=terms, learnt=learnt)
 
 

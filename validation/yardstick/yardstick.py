@@ -155,7 +155,8 @@ def folds_of(case: Case) -> tuple[Folds, Columns] | None:
     if not columns.sensors:
         return None
     step = row_step(tests, columns)
-    records = _parted([table_record(t, columns, step) for t in tests])
+    every = _parted([table_record(t, columns, step) for t in tests])
+    records = [r for r in every if r.read.any()]  # of what all sensors stuck in nothing can be predicted
     if len(records) < 2 or min(len(r.time) for r in records) < FEWEST:
         return None
     return _folds(records), columns

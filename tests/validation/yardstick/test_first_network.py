@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from two_bodies import bench
 
+from lumped.integration.simulate import Record, simulate
 from measured.importing.starter import FirstNetwork
 from measured.sensors.faults import broken_channels
 from validation.yardstick.first_network import learn_network
@@ -61,6 +62,20 @@ def test_a_place_whose_sensor_is_plainly_broken_stays_in_the_network():
     learnt = learn_network(replace(case, tests=tests), first)
     assert list(learnt.capacities) == ["body", "core"]
     assert any("core" in t.ends and len(t.ends) == 2 for t in learnt.terms)
+
+
+@pytest.mark.parametrize("noise_K", [0.0, 0.05])
+def test_of_one_recording_that_rests_at_first_the_rest_teaches(case, noise_K):
+    """A third says nothing of heat; without noise its readings are not even known to be alive."""
+    (test, *_), net = case.tests, case.model.network
+    load = np.where(test.time < 0.4 * test.time[-1], 0.0, test.inputs["load"])
+    rows = [net.places[c.place].mean for c in test.channels]
+    y = simulate(net, Record(test.time, {"load": load}, test.boundaries, 20.0), {}, rows).y
+    y = y + noise_K * np.random.default_rng(0).standard_normal(y.shape)
+    channels = tuple(replace(c, y=y[:, i]) for i, c in enumerate(test.channels))
+    one = replace(case, tests=(replace(test, inputs={"load": load}, channels=channels),))
+    learnt = learn_network(one, first_of(one))
+    assert learnt.learnt == ["noon"]
 
 
 def test_held_out_readings_change_nothing(case, learnt):
