@@ -23,7 +23,7 @@ UNIT_NAMES = ("unit", "units", "einheit", "unité", "unità", "単位", "单位"
 MOST, LONG = 100, 20  # signals and readings of a table that lies on its side
 NUMBERED = re.compile(r"\W*(?:(?i:col|column|spalte|colonne|columna|field|channel|ch)\W*)?(\d+)\s*[:=.)-]\s*(\w.*)")
 EXPLAINED = re.compile(r"[\W_]*(\w.*?)\s*[=:]\s+(\S.*)")  # a line that says what a channel is
-SETTING = re.compile(r"[^\W\d][^:]*:\s*(.*)")  # "Unit:C", or "Start:" where nothing was set
+SETTING = re.compile(r"[^\W\d][^:=]*[:=]\s*(.*)")  # "Unit:C", or "Start:" where nothing was set
 
 
 def layout(rows: Sequence[Row], where: str) -> Layout:

@@ -235,8 +235,7 @@ def runs_of(source: Source, period_s: float | None = None) -> list[Source]:
 
 
 def in_time_order(source: Source) -> Source:
-    """With rows that stand out of order where they belong, or without those of a dated clock that stand in the file
-    again, and a note.
+    """With rows that stand out of order where they belong, or without those that stand in the file again, and a note.
 
     As it is where that makes no even clock: one that starts anew, or is set back, is another matter; numbers that fall
     throughout may count down.
@@ -248,7 +247,7 @@ def in_time_order(source: Source) -> Source:
     for i, row in enumerate(zip(*(map(str, cells) for cells in source.cells.values()), strict=True)):
         once.setdefault(row, i)
     rows = [*once.values()]
-    if clock.start is not None and len(rows) < source.rows and bool((np.diff(clock.seconds[rows]) > 0).all()):
+    if len(rows) < source.rows and bool((np.diff(clock.seconds[rows]) > 0).all()):
         return _part(source, rows, f"{source.rows - len(rows)} rows that stand in it again are left out")
     order = np.argsort(clock.seconds, kind="stable")
     step = np.diff(clock.seconds[order])

@@ -599,6 +599,9 @@ def test_a_labview_file_has_its_units_in_its_second_head_and_no_groups(tmp_path)
         ("T escobillas", Role.COMMUTATOR),
         ("Olie boven", None),  # no oven
         ("teplota okolia", Role.AMBIENT),
+        ("Rulman sıcaklığı tahrik tarafı", Role.BEARING),
+        ("อุณหภูมิตลับลูกปืน", Role.BEARING),
+        ("อุณหภูมิตัวถัง", Role.HOUSING),
         ("Korpus", Role.HOUSING),
         ("코일 온도", Role.WINDING),
         ("실내 온도", Role.AMBIENT),

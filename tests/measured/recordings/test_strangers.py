@@ -656,6 +656,10 @@ WRITTEN = {  # each is a winding, a frame, the room and a current
     "a limit beside readings": table(
         ",".join((*PLAIN, "T_winding max allowed [C]")), *(S[c] for c in "tWHAI"), "155.0"
     ),
+    "settings over the names": "Start:08:15,Winding:C,Speed:0,Current:5,Torque:,Voltage:12,Frame:3\n"
+    + of(PLAIN, "tWHAI"),
+    "all rows so far written again": of(PLAIN, "tWHAI").rsplit("\n", 30)[0]
+    + of(PLAIN, "tWHAI").removeprefix(",".join(PLAIN)),
     "signals of JSON by their names": json.dumps(
         {
             "device": "X",
@@ -809,7 +813,12 @@ def test_of_a_room_and_the_instrument_alone_there_is_no_machine(tmp_path):
 @pytest.mark.parametrize("room", ["T_TESTCELL", "Test cell", "Prüfzelle", "Prüfraum", "Cella di prova"])
 @pytest.mark.parametrize(
     ("inlet", "outlet"),
-    [("T_EM_COOL_IN", "T_EM_COOL_OUT"), ("Water in", "Water out"), ("냉각수입구온도", "냉각수출구온도")],
+    [
+        ("T_EM_COOL_IN", "T_EM_COOL_OUT"),
+        ("Water in", "Water out"),
+        ("냉각수입구온도", "냉각수출구온도"),
+        ("Voda ulaz", "Voda izlaz"),
+    ],
 )
 def test_rooms_of_test_beds_and_what_flows_in(tmp_path, room, inlet, outlet):
     names = [f"{name} [°C]" for name in ("T_winding", outlet, inlet, room)]
