@@ -23,6 +23,7 @@ UNIT_NAMES = ("unit", "units", "einheit", "unité", "unità", "単位", "单位"
 MOST, LONG = 100, 20  # signals and readings of a table that lies on its side
 NUMBERED = re.compile(r"\W*(?:(?i:col|column|spalte|colonne|columna|field|channel|ch)\W*)?(\d+)\s*[:=.)-]\s*(\w.*)")
 EXPLAINED = re.compile(r"[\W_]*(\w.*?)\s*[=:]\s+(\S.*)")  # a line that says what a channel is
+SETTING = re.compile(r"[^\W\d][^:=]*[:=]\s*(.*)")  # "Unit:C", or "Start:" where nothing was set
 
 
 def layout(rows: Sequence[Row], where: str) -> Layout:
@@ -69,7 +70,8 @@ def layout(rows: Sequence[Row], where: str) -> Layout:
     names = called(names, rows[:header])
     alone = [str(rows[i][0]) for i in range(header + 1, first) if len(trimmed(rows[i])) == 1 and rows[i][0]]
     names[0] = alone[-1] if alone and is_time(split_unit(alone[-1])[0]) and not is_time(names[0]) else names[0]
-    above = [_padded(rows[i], width) for i in range(header) if len(trimmed(rows[i])) > 1 and not _readings(rows[i])]
+    over = [row for row in rows[:header] if len(trimmed(row)) > 1 and not _readings(row) and not _settings(row)]
+    above = [_padded(row, width) for row in over]
     groups = [""] * width
     one = bool(above) and len({*filter(None, above[-1][1:])}) == 1 < sum(map(bool, above[-1][1:]))  # says nothing
     if above and any(above[-1][width // 2 :]) and not one:  # names of groups over those of columns
@@ -138,6 +140,8 @@ def _block(rows: Sequence[Row], first: int, width: int) -> list[int]:
         if alone or any(map(is_date, cells)) or (1 < len(cells) < 0.5 * width and all(map(is_time, cells))):
             continue
         if len(cells) > 2 and ((len(set(cells[1:])) == 1 and is_reading(cells[1])) or _valued(cells)):
+            continue
+        if block and _settings(cells):
             continue
         if cells and re.fullmatch("#[A-Z]+", cells[0]) and len(cells) < 3:  # a mark of what follows: #TYPES, #ROWS
             continue
@@ -243,6 +247,12 @@ def _valued(row: Row) -> bool:
     """Are all of its cells numbers with one unit, as rates of channels are over readings without one?"""
     units = {match[2] if (match := WITH_UNIT.fullmatch(str(c).strip())) else "" for c in trimmed(row)}
     return len(units) == 1 and "" not in units
+
+
+def _settings(row: Row) -> bool:
+    """Is every cell "name:" or "name: value", as settings over the names are, with a reading behind one of them?"""
+    cells = [SETTING.fullmatch(str(c).strip()) for c in trimmed(row)]
+    return all(cells) and any(match and is_reading(match[1]) for match in cells)
 
 
 def _kinds(row: Row, width: int) -> list[bool]:

@@ -14,7 +14,8 @@ import numpy as np
 from geom.arrays import Array, Ints
 from geom.errors import InputError
 from measured.headers.cells import CLOCK, COMPACT, SPAN, is_clock, is_date, is_span, unit_of
-from measured.headers.words import CLOCKS, RUNS, VOCABULARY, is_time, quantities_of, tokens
+from measured.headers.rows import NO_RECORD
+from measured.headers.words import CLOCKS, RUNS, VOCABULARY, is_time, quantities_of, roles_of, tokens
 from measured.importing.source import BINARY, UNNAMED, Source
 from measured.recordings.formats import EPOCH, TIME, joined
 from measured.recordings.units import QUANTITIES
@@ -102,6 +103,11 @@ def clock_of(source: Source, period_s: float | None = None) -> Clock:
     clock = None if period_s is not None else _guessed_clock(source)
     finite = clock.seconds[np.isfinite(clock.seconds)] if clock else np.empty(0)
     if clock is None or (finite.size >= LEAST and np.ptp(finite) == 0):
+        for column in [c for c in source.cells if period_s is None and not source.is_numeric(c)]:
+            parts = [*map(str, source.cells[column])]  # as a report lists what each of them reached
+            if len({*parts}) == len(parts) and 2 * sum(map(bool, map(roles_of, parts))) > len(parts):
+                what, where = f"each row is another part: {NO_RECORD}", f"{source.file} column '{column}'"
+                raise InputError(what, where, "a column for each part, a row for each instant")
         step = period_s or source.period_s or 1.0
         seconds = step * np.arange(source.rows, dtype=np.float64)
         still = "no time column" if clock is None else f"the clock '{', '.join(clock.columns)}' stands still"
@@ -229,7 +235,7 @@ def runs_of(source: Source, period_s: float | None = None) -> list[Source]:
 
 
 def in_time_order(source: Source) -> Source:
-    """With rows that stand out of order where they belong, and a note.
+    """With rows that stand out of order where they belong, or without those that stand in the file again, and a note.
 
     As it is where that makes no even clock: one that starts anew, or is set back, is another matter; numbers that fall
     throughout may count down.
@@ -237,6 +243,12 @@ def in_time_order(source: Source) -> Source:
     clock = _guessed_clock(source)
     if clock is None or not np.isfinite(clock.seconds).all():
         return source
+    once = dict[tuple[str, ...], int]()
+    for i, row in enumerate(zip(*(map(str, cells) for cells in source.cells.values()), strict=True)):
+        once.setdefault(row, i)
+    rows = [*once.values()]
+    if len(rows) < source.rows and bool((np.diff(clock.seconds[rows]) > 0).all()):
+        return _part(source, rows, f"{source.rows - len(rows)} rows that stand in it again are left out")
     order = np.argsort(clock.seconds, kind="stable")
     step = np.diff(clock.seconds[order])
     back = int((np.diff(clock.seconds) < 0).sum())

@@ -136,6 +136,7 @@ T_winding [°C],냉각수출구온도 [°C],냉각수입구온도 [°C],Prüfzel
   | WXQAI | winding - coolant ambient current_A
 T_winding [°C],T_EM_COOL_OUT [°C],T_EM_COOL_IN [°C],Prüfraum [°C],I [A] | WXQAI | winding - coolant ambient current_A
 T_winding [°C],Water out [°C],Water in [°C],Cella di prova [°C],I [A] | WXQAI | winding - coolant ambient current_A
+T_winding [°C],Voda izlaz [°C],Voda ulaz [°C],Test cell [°C],I [A] | WXQAI | winding - coolant ambient current_A
 i_rms,w_mech,T_load,T_winding,T_housing,T_amb
   | IrqWHA | current_A speed_rpm torque_Nm winding housing ambient | AS_TORQUE 3
 hotspot,heatsink,ambient,I [A] | WHAI | hotspot heatsink ambient current_A | OF_TESTED 2

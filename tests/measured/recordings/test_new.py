@@ -235,6 +235,7 @@ def dated(day):
 
 BAD = {
     "no record": ({"a.csv": "Dear colleague,\nplease find attached the report.\nRegards"}, {}, "not a record"),
+    "a report": ({"a.csv": "Point,End (C)\nWinding U,118\nWinding V,119\nBearing DE,71\nRoom,23"}, {}, "another part"),
     "binary": ({"a.png": "\x00\x01\x02"}, {}, "not a record"),
     "one column": ({"a.csv": "T_winding\n" + "\n".join(str(20 + i) for i in range(30))}, {}, "one column only"),
     "clocks apart": (

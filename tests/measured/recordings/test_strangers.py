@@ -648,6 +648,8 @@ WRITTEN = {  # each is a winding, a frame, the room and a current
         for k in range(len(S["t"]))
     ),
     "a limit beside readings": table(f"{PLAIN},T_winding max allowed [C]", *(S[c] for c in "tWHAI"), "155.0"),
+    "settings over the names": "Start:08:15,Winding:C,Speed:0,Current:5,Torque:,Voltage:12,Frame:3\n" + of(PLAIN),
+    "all rows so far written again": of(PLAIN).rsplit("\n", 30)[0] + of(PLAIN).removeprefix(PLAIN),
     "signals of JSON by their names": json.dumps(
         {
             "device": "X",
