@@ -151,8 +151,12 @@ def test_what_a_family_calls_its_parts_stays_in_its_room(root, trees):
 @pytest.mark.parametrize(
     "text",
     [
-        *('"gap" in p.name', 'name.endswith("flow")', '"shaft" in n.lower()'),
-        *('link.places[0].split(".")[0] == "foot"', '"oil" not in fluid', 'part.startswith("bearing")'),
+        '"gap" in p.name',
+        'name.endswith("flow")',
+        '"shaft" in n.lower()',
+        'link.places[0].split(".")[0] == "foot"',
+        '"oil" not in fluid',
+        'part.startswith("bearing")',
     ],
 )
 def test_the_check_sees_what_it_is_for(text):

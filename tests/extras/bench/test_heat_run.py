@@ -121,8 +121,11 @@ def test_uncertainty_of_a_rise_by_hand():
 @pytest.mark.parametrize(
     ("rise", "U95", "verdict", "in_hand"),
     [
-        *((97.0, 3.0, "passes", 5.0), (109.0, 3.0, "fails", -1.0), (106.0, 3.0, "cannot be judged", 0.0)),
-        *((104.0, 3.0, "cannot be judged", 0.0), (105.0, 0.0, "passes", 0.0)),
+        (97.0, 3.0, "passes", 5.0),
+        (109.0, 3.0, "fails", -1.0),
+        (106.0, 3.0, "cannot be judged", 0.0),
+        (104.0, 3.0, "cannot be judged", 0.0),
+        (105.0, 0.0, "passes", 0.0),
     ],
 )
 def test_verdict(rise, U95, verdict, in_hand):

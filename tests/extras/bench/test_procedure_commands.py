@@ -129,11 +129,13 @@ def test_a_second_case_may_have_the_earlier_test(thermoscope, tmp_path):
 @pytest.mark.parametrize(
     ("command", "words"),
     [
-        *((("curves", "nowhere"), "no such case folder"), (("bases", "nowhere"), "no such case folder")),
+        (("curves", "nowhere"), "no such case folder"),
+        (("bases", "nowhere"), "no such case folder"),
         (("bases", "CASE"), "the network knows no bases"),
         (("two-paths", "CASE"), "unknown place 'winding.copper'"),
         (("two-paths", "CASE", "--winding", "winding", "--machine", "yok"), "unknown place 'yok'"),
-        *((("carry", "CASE", "nowhere"), "no such case folder"), (("screen", "pmsm-m9"), "no such machine file")),
+        (("carry", "CASE", "nowhere"), "no such case folder"),
+        (("screen", "pmsm-m9"), "no such machine file"),
         (("screen", "ipmsm-48s8p-jacket"), "has a housing or no magnets"),
         (("screen", "pmsm-m1", "--design", "thirds"), "no design 'thirds'"),
     ],

@@ -133,7 +133,11 @@ def test_the_header_says_what_a_user_must_know(tmp_path):
     assert export(str(CASES / "hust-ipmsm"), tmp_path, "c", ["winding=155"], json=str(tmp_path / "said.json")) == 0
     text = (tmp_path / "thermal_network_sizes.h").read_text()
     for said in (
-        *("revision 0", "speed_rpm (rpm), 0 to", "coolant (degC)", "winding, limit 155 degC", "State: 88 bytes"),
+        "revision 0",
+        "speed_rpm (rpm), 0 to",
+        "coolant (degC)",
+        "winding, limit 155 degC",
+        "State: 88 bytes",
         "sensor rotor, against measurements 6.16 K rms (hold-out tests)",
     ):
         assert said in text

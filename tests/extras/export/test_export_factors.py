@@ -58,7 +58,9 @@ STREAM = streamed("flow_l_min", 4.0, lambda v, fluid: duct_film(v, 0.01, 1.0, fl
 EXACT = [
     Fixed(3.0),
     InputPower(2.0, (("speed_rpm", 1000.0, 0.8), ("flow_l_min", 4.0, 0.5))),
-    *(COPPER, MAP, FOLLOWING),
+    COPPER,
+    MAP,
+    FOLLOWING,
     CopperLoss(0.01, ("id_A",)),
     by_dowell(CopperLoss(0.01, ("id_A", "iq_A"), 1.5), "speed_rpm", 4, 3e-3, 0.8, 5),
     PowerLoss(((2.0, (("speed_rpm", 1000.0, 1.0),)), (3.0, (("id_A", 50.0, 2.0),)))),

@@ -68,9 +68,12 @@ def test_a_channel_goes_where_it_is_dragged(dropped):
 @pytest.mark.parametrize(
     ("key", "to", "words"),
     [
-        *(("0:I [A]", "winding", "is a current"), ("0:T Wicklung", "current_A", "is a temperature")),
-        *(("0:Bemerkung", "flange", "words, not numbers"), ("0:I [A]", "nowhere", "no 'nowhere'")),
-        *(("7:I [A]", "winding", "no column"), ("x", "winding", "no column")),
+        ("0:I [A]", "winding", "is a current"),
+        ("0:T Wicklung", "current_A", "is a temperature"),
+        ("0:Bemerkung", "flange", "words, not numbers"),
+        ("0:I [A]", "nowhere", "no 'nowhere'"),
+        ("7:I [A]", "winding", "no column"),
+        ("x", "winding", "no column"),
     ],
 )
 def test_a_channel_cannot_go_where_it_makes_no_sense(dropped, key, to, words):

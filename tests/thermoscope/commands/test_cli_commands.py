@@ -52,7 +52,14 @@ FIELDS = {
 ROWS = {
     ("wrong", "tests"): {"name", "role", "rmse_K", "channels"},
     ("diagnose", "candidates"): {
-        *("effect", "score", "threshold", "amplitude", "explained", "rmse_K", "holdout_rmse_K", "confused_with"),
+        "effect",
+        "score",
+        "threshold",
+        "amplitude",
+        "explained",
+        "rmse_K",
+        "holdout_rmse_K",
+        "confused_with",
         "decision",
     },
     ("diagnose", "cannot_see"): {"effect", "smallest_detectable", "unit"},
@@ -140,9 +147,27 @@ def test_a_case_inside_the_package_is_copied_before_writing(tmp_path, monkeypatc
 def test_compare_loads_what_runs_a_network_alone(case):
     """Most of what a comparison of few nodes takes is loading packages: NumPy and Numba are needed, these are not."""
     slow = [
-        *("pandas", "scipy.special", "scipy.sparse", "scipy.optimize", "scipy.stats", "scipy.interpolate"),
-        *("tkinter", "matplotlib", "plotly", "pint", "CoolProp", "ht", "fluids", "openpyxl", "ruptures"),
-        *("uncertainties", "jsonschema", "geom.solids", "fem", "viz", "validation.inference.refit"),
+        "pandas",
+        "scipy.special",
+        "scipy.sparse",
+        "scipy.optimize",
+        "scipy.stats",
+        "scipy.interpolate",
+        "tkinter",
+        "matplotlib",
+        "plotly",
+        "pint",
+        "CoolProp",
+        "ht",
+        "fluids",
+        "openpyxl",
+        "ruptures",
+        "uncertainties",
+        "jsonschema",
+        "geom.solids",
+        "fem",
+        "viz",
+        "validation.inference.refit",
     ]
     end = f"atexit.register(lambda: print(*[m for m in {slow} if m in sys.modules], file=sys.stderr))"
     command = [sys.executable, "-c", f"import atexit, sys; {end}; {RUN}", "test", "compare", str(case)]

@@ -127,9 +127,12 @@ def test_asking_takes_a_number_of_the_list(word, name, monkeypatch, capsys):
 @pytest.mark.parametrize(
     ("own", "all_tests", "other", "kept"),
     [
-        *(("accepted", "accepted", "validate", "own"), ("worth keeping", "accepted", "validate", "all")),
-        *(("worth keeping", "refused", "validate", "own"), ("worth keeping", "accepted", "hold-out", "own")),
-        *(("refused", "accepted", "validate", "all"), ("refused", "refused", "validate", None)),
+        ("accepted", "accepted", "validate", "own"),
+        ("worth keeping", "accepted", "validate", "all"),
+        ("worth keeping", "refused", "validate", "own"),
+        ("worth keeping", "accepted", "hold-out", "own"),
+        ("refused", "accepted", "validate", "all"),
+        ("refused", "refused", "validate", None),
     ],
 )
 def test_a_calibration_that_spoils_others_gives_way_to_one_of_all_tests(own, all_tests, other, kept, monkeypatch):

@@ -77,8 +77,14 @@ def test_commands_print_through_answers_alone(root):
 
 
 CHEAP = [
-    *("test compare CASE", "test doctor CASE", "explain effects CASE", "model machines", "use simulate CASE"),
-    *("model calibrate CASE", "check", "compare CASE --all"),
+    "test compare CASE",
+    "test doctor CASE",
+    "explain effects CASE",
+    "model machines",
+    "use simulate CASE",
+    "model calibrate CASE",
+    "check",
+    "compare CASE --all",
 ]
 
 

@@ -42,7 +42,11 @@ def test_the_page_and_the_terminal_show_the_same_words():
     [
         (None, "-"),
         (float("nan"), "-"),
-        *((True, "yes"), (1234.5, "1234"), (0.00123, "0.00123"), (12.3456, "12.35"), (3, "3")),
+        (True, "yes"),
+        (1234.5, "1234"),
+        (0.00123, "0.00123"),
+        (12.3456, "12.35"),
+        (3, "3"),
     ],
 )
 def test_numbers_have_three_digits(value, text):

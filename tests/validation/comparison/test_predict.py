@@ -69,8 +69,15 @@ def predict_without_lag(net, test):
 
 
 HEADS = (
-    *("bias:yoke", "gain:yoke", "stem:housing", "drift:yoke", "lag:yoke", "boundary:ambient", "initial:warm"),
-    *("delay:warm", "swap:yoke|housing"),
+    "bias:yoke",
+    "gain:yoke",
+    "stem:housing",
+    "drift:yoke",
+    "lag:yoke",
+    "boundary:ambient",
+    "initial:warm",
+    "delay:warm",
+    "swap:yoke|housing",
 )
 
 

@@ -11,7 +11,15 @@ from measured.case import Case, Channel, Model, Test
 SECTIONS = ("nodes", "surfaces", "means", "links", "streams", "losses", "parameters", "boundaries", "inputs")
 SHARES = ("of", "at", "wall", "acts_on")  # tables whose keys are names
 INPUTS = (
-    *("input", "currents", "current", "speed", "torque", "voltage", "excitation", "product", "flow_m3_h_input"),
+    "input",
+    "currents",
+    "current",
+    "speed",
+    "torque",
+    "voltage",
+    "excitation",
+    "product",
+    "flow_m3_h_input",
     "flow_l_min_input",
 )
 KEPT = ("kind", "surface", "law", "mapping", "coolant", "arrangement", "unit", "source", "role", "quantity", "name")

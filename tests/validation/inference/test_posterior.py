@@ -27,7 +27,10 @@ from validation.inference.refit import laplace, with_gains, with_shortfalls
 from validation.inference.score import one_size
 
 NAMES = (
-    *("convection@flange.right", "convection.constant@flange.right", "brush.drop@commutator", "sensor.bias@yoke"),
+    "convection@flange.right",
+    "convection.constant@flange.right",
+    "brush.drop@commutator",
+    "sensor.bias@yoke",
     "mass@shaft",
 )
 

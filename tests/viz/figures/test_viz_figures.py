@@ -25,8 +25,11 @@ EFFECTS = {
     "effects": [
         {"effect": e, "words": w, "value": v, "active": abs(v) > 1.8}
         for e, w, v in (
-            *(("A", "convection", -19.2), ("B", "emissivity", -17.4), ("AB", "convection x emissivity", 4.6)),
-            *(("E", "end-winding impregnation", 0.2), ("F", "speed", 0.4)),
+            ("A", "convection", -19.2),
+            ("B", "emissivity", -17.4),
+            ("AB", "convection x emissivity", 4.6),
+            ("E", "end-winding impregnation", 0.2),
+            ("F", "speed", 0.4),
         )
     ],
 }
