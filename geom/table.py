@@ -137,6 +137,11 @@ def cell(value: Any) -> str:
     return str(value)
 
 
+def unit_suffix(unit: str) -> str:
+    """A unit as it stands behind a number, with a blank; nothing of a number without one."""
+    return "" if unit == "1" else f" {unit}"
+
+
 def percent(probability: float) -> str:
     """A probability as every page, list and picture says it: "> 99 %", "97 %", "< 1 %"."""
     if probability >= 0.995:

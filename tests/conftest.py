@@ -51,8 +51,9 @@ def pytest_runtest_logreport(report: pytest.TestReport) -> None:
 
 def pytest_sessionfinish(session: pytest.Session) -> None:
     if session.config.getoption("--record") and "PYTEST_XDIST_WORKER" not in os.environ:
-        kept = {file: seconds for file, seconds in durations().items() if (ROOT / file).exists()}
-        least = durations() if session.config.getoption("--turn") is not None else {}  # of a part of its tests
+        known = durations()
+        kept = {file: seconds for file, seconds in known.items() if (ROOT / file).exists()}
+        least = known if session.config.getoption("--turn") is not None else {}  # of a part of its tests
         kept |= {f: max(round(seconds, 1), least.get(f, 0.0)) for f, seconds in spent.items() if seconds >= 0.5}
         DURATIONS.write_text(json.dumps(dict(sorted(kept.items(), key=lambda pair: -pair[1])), indent=0) + "\n")
 

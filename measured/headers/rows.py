@@ -251,8 +251,9 @@ def _valued(row: Row) -> bool:
 
 def _settings(row: Row) -> bool:
     """Is every cell "name:" or "name: value", as settings over the names are, with a reading behind one of them?"""
-    cells = [SETTING.fullmatch(str(c).strip()) for c in trimmed(row)]
-    return all(cells) and any(match and is_reading(match[1]) for match in cells)
+    cells = trimmed(row)
+    values = [match[1] for c in cells if (match := SETTING.fullmatch(str(c).strip()))]
+    return len(values) == len(cells) and any(map(is_reading, values))
 
 
 def _kinds(row: Row, width: int) -> list[bool]:

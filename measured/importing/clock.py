@@ -14,7 +14,7 @@ import numpy as np
 from geom.arrays import Array, Ints
 from geom.errors import InputError
 from measured.headers.cells import CLOCK, COMPACT, SPAN, is_clock, is_date, is_span, unit_of
-from measured.headers.rows import NO_RECORD
+from measured.headers.rows import MOST, NO_RECORD
 from measured.headers.words import CLOCKS, RUNS, VOCABULARY, is_time, quantities_of, roles_of, tokens
 from measured.importing.source import BINARY, UNNAMED, Source
 from measured.recordings.formats import EPOCH, TIME, joined
@@ -103,11 +103,8 @@ def clock_of(source: Source, period_s: float | None = None) -> Clock:
     clock = None if period_s is not None else _guessed_clock(source)
     finite = clock.seconds[np.isfinite(clock.seconds)] if clock else np.empty(0)
     if clock is None or (finite.size >= LEAST and np.ptp(finite) == 0):
-        for column in [c for c in source.cells if period_s is None and not source.is_numeric(c)]:
-            parts = [*map(str, source.cells[column])]  # as a report lists what each of them reached
-            if len({*parts}) == len(parts) and 2 * sum(map(bool, map(roles_of, parts))) > len(parts):
-                what, where = f"each row is another part: {NO_RECORD}", f"{source.file} column '{column}'"
-                raise InputError(what, where, "a column for each part, a row for each instant")
+        if period_s is None and source.rows <= MOST:  # of a longer text each cell would take a quarter of a millisecond
+            _check_parts(source)
         step = period_s or source.period_s or 1.0
         seconds = step * np.arange(source.rows, dtype=np.float64)
         still = "no time column" if clock is None else f"the clock '{', '.join(clock.columns)}' stands still"
@@ -206,6 +203,15 @@ def _part(source: Source, rows: Sequence[int] | Ints, note: str) -> Source:
     """Some of its rows, and a note."""
     cells = {n: c[rows] if isinstance(c, np.ndarray) else [c[i] for i in rows] for n, c in source.cells.items()}
     return replace(source, cells=cells, notes=(*source.notes, f"{source.file.name}: {note}"), values={})
+
+
+def _check_parts(source: Source) -> None:
+    """Refuses a table with another part in each row, as a report lists what each of them reached."""
+    for column in [c for c in source.cells if not source.is_numeric(c)]:
+        parts = [*map(str, source.cells[column])]
+        if len({*parts}) == len(parts) and 2 * sum(map(bool, map(roles_of, parts))) > len(parts):
+            what, where = f"each row is another part: {NO_RECORD}", f"{source.file} column '{column}'"
+            raise InputError(what, where, "a column for each part, a row for each instant")
 
 
 def runs_of(source: Source, period_s: float | None = None) -> list[Source]:

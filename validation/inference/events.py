@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.special import logsumexp
 
-from geom.arrays import Array
+from geom.arrays import Array, sample_columns
 from geom.errors import NoSolution
 from lumped.model.multipliers import parameter_values
 from lumped.model.network import Network
@@ -184,10 +184,7 @@ def closer_look(fit: Fit, test: Test, instants: Sequence[float], reach_s: float,
     old = {s.channel: s for s in fit.parts if s.test == test.name}
     error = fit.error
     if error:
-        columns = {
-            (test.name, c): np.column_stack([np.interp(s.time, old[c].time, x) for x in error.of(old[c]).T])
-            for c, s in new.items()
-        }
+        columns = {(test.name, c): sample_columns(s.time, old[c].time, error.of(old[c])) for c, s in new.items()}
         error = replace(error, columns={**error.columns, **columns})
     parts = tuple(new.get(s.channel, s) if s.test == test.name else s for s in fit.parts)
     return replace(fit, parts=parts, error=error), near

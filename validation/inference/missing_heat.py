@@ -14,7 +14,7 @@ import numpy as np
 from scipy.linalg import block_diag
 from scipy.special import logsumexp
 
-from geom.arrays import Array
+from geom.arrays import Array, sample_columns
 from lumped.model.network import Network, Parameter
 from lumped.model.sites import solids
 from lumped.transfer.laws import Fixed, Inputs
@@ -206,8 +206,7 @@ def activity(tests: Sequence[Test], knots: Mapping[str, Array]) -> Array:
 
 def knot_values(test: Test, series: Array, knots: Array) -> Array:
     """A series (n, ...) of a test at some instants."""
-    columns = np.reshape(np.asarray(series, float), (test.time.size, -1))
-    return np.column_stack([np.interp(knots, test.time, c) for c in columns.T])
+    return sample_columns(knots, test.time, np.reshape(np.asarray(series, float), (test.time.size, -1)))
 
 
 def over_range(x: Array) -> Array:

@@ -8,7 +8,7 @@ from scipy.special import logit, ndtri
 
 from geom.arrays import Array
 from geom.constants import NORMAL_95
-from geom.table import percent
+from geom.table import percent, unit_suffix
 from measured.case import Case, Test
 from measured.doubt import USUAL
 from measured.sensors.faults import PlainFaults
@@ -471,8 +471,7 @@ def _group_words(posterior: Posterior, group: Group, rows: Sequence[Candidate], 
             h = posterior.best if group[0] in posterior.best.members else posterior.single[group[0]]
             text = effect.words(best.value, e.fit.network, (h.fit or e.fit).values, best.ci95)
             return f"{text} ({percent(best.probability)})"
-        unit = "" if best.unit == "1" else f" {best.unit}"
-        size = "" if effect.whole else f", {best.value:.3g}{unit}{impossible_words(effect, best)}"
+        size = "" if effect.whole else f", {best.value:.3g}{unit_suffix(best.unit)}{impossible_words(effect, best)}"
         return f"{'fault' if effect.fault else 'missing'}: {effect.statement}{size} ({percent(best.probability)})"
     probability = {k: by_name[e.names[k]].probability for k in group if e.names[k] in by_name}
     members = [(k, p) for k, p in probability.items() if p >= LEAST_MEMBER or k in group[:2]]

@@ -12,8 +12,8 @@ from types import MappingProxyType
 
 import numpy as np
 
-from geom.arrays import Array, Mask
-from geom.table import TableRow
+from geom.arrays import Array, Mask, sample_columns
+from geom.table import TableRow, unit_suffix
 from measured.case import STILL_K, Test
 from measured.sensors.blocks import groups
 from validation.calibration.calibrate import ROUGH, CachedSegments, Fit, minimise
@@ -197,10 +197,11 @@ def _log_density(fit: Fit, learnt: Sequence[tuple[Segment, Array]], unseen: Sequ
         X = fit.noise.whiten(s, np.column_stack([s.J, D]))
         H += X.T @ X
     more, pull, square, noise = H.copy(), np.zeros(len(H)), 0.0, 0.0
-    columns = {(x.test, x.channel): (x, np.hstack([x.J, fit.error.of(x)]) if fit.error else x.J) for x in fit.parts}
+    every = {(s.test, s.channel): s for s in fit.parts}
     for s in unseen:  # a fault may have left a hole in their readings
-        whole, J = columns[s.test, s.channel]
-        X = fit.noise.whiten(s, np.column_stack([*(np.interp(s.time, whole.time, x) for x in J.T), s.r]))
+        whole = every[s.test, s.channel]
+        J = np.hstack([whole.J, fit.error.of(whole)]) if fit.error else whole.J
+        X = fit.noise.whiten(s, np.column_stack([sample_columns(s.time, whole.time, J), s.r]))
         more += X[:, :-1].T @ X[:, :-1]
         pull += X[:, :-1].T @ X[:, -1]
         square += float(X[:, -1] @ X[:, -1])
@@ -270,7 +271,7 @@ def bound_check(fit: Fit, name: str) -> Check:
     """
     k = fit.unknowns.names.index(name)
     p, value = fit.unknowns.parameters[k], to_value(fit.unknowns.parameters[k], float(fit.theta[k]))
-    unit = "" if p.unit == "1" else f" {p.unit}"
+    unit = unit_suffix(p.unit)
     inside = f"{name} {value:.3g} lies between {p.low:.5g} and {p.high:.5g}{unit}"
     if fit.at_bound[k] and value == p.neutral:
         return Check("bounds", False, value, p.high, f"{name} is fitted to {value:.3g}{unit}: it is not there")

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from geom.arrays import Array, Ints, Mask
+from geom.arrays import Array, Ints, Mask, sample_columns
 from validation.yardstick.free_network import loss_factors
 from validation.yardstick.records import Columns, Folds, Record
 
@@ -32,7 +32,7 @@ class BlackBox:
             for i, row in enumerate(drive @ self.weights[k:]):
                 T[i + 1] = T[i] + T[i, self.steady] @ self.weights[:k] + row
         T = np.nan_to_num(T, nan=np.inf, posinf=np.inf, neginf=np.inf)
-        return np.column_stack([np.interp(record.time, record.time[ends], column) for column in T.T])
+        return sample_columns(record.time, record.time[ends], T)
 
 
 def window_ends(rows: int, window: int) -> Ints:

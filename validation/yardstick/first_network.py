@@ -67,9 +67,9 @@ def learn_network(case: Case, first: FirstNetwork) -> FirstNetwork:
         needed, table, left_out = fewer
     fits = [table.fit(every, needed), *(table.fit([j for j in every if j != i], needed) for i in every)]
     warm = [(theta, C, watts) for theta, C in fits if (watts := table.mean_heat(theta, heat)) > 0.0]
-    if not table.mean_heat(fits[0][0], heat) > 0.0 or len(warm) < 2:
+    if len(warm) < 2 or warm[0][0] is not fits[0][0]:
         return first  # nothing heats it: there is no size to give to anything
-    (theta, C), *parts = [(first.watts / watts * theta, first.watts / watts * C) for theta, C, watts in warm]
+    (theta, C), *parts = [(s * theta, s * C) for theta, C, watts in warm for s in [first.watts / watts]]
     scale = dict(zip(columns.inputs, map(float, columns.scale), strict=True))
     follows = [tuple((f.input, scale[f.input], f.exponent) for f in of) for _, of in table.candidates]
     spreads = [_spread(values) for values in zip(*(part for part, _ in parts), strict=True)]

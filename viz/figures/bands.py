@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from geom.arrays import Array
-from geom.table import with_interval
+from geom.table import unit_suffix, with_interval
 from viz.colours import BLUE, LIGHT, ORANGE, VERMILION
 from viz.data import short
 from viz.figures import paper
@@ -108,8 +108,7 @@ def intervals(parameters: Sequence[Mapping[str, Any]], *, png: str | Path | None
         ax.plot([a, b], [y, y], color=colour, lw=2.2, alpha=alpha, solid_capstyle="butt")
         at, mark = (x, "o") if abs(x) < WIDEST else (0.98 * WIDEST, ">") if x > 0 else (-0.98 * WIDEST, "<")
         ax.plot([at], [y], mark, color=colour, ms=5.0, alpha=alpha)
-        unit = "" if p["unit"] == "1" else f" {p['unit']}"
-        words = f"{minus(with_interval(p['value'], *p['ci95']))}{unit}".replace(" ... ", " … ")
+        words = f"{minus(with_interval(p['value'], *p['ci95']))}{unit_suffix(p['unit'])}".replace(" ... ", " … ")
         ax.text(1.02, y, words, transform=ax.get_yaxis_transform(), va="center", fontsize=8)
     ax.set_yticks(range(len(rows)), [textwrap.fill(p.get("words", p["name"]), 44) for p, _ in rows], fontsize=8.5)
     ax.grid(False, axis="y")
